@@ -170,7 +170,7 @@ endef
 	chmod +x $(BIN)/mpiexec
 	# Compile the formulas now, not in the first run, on two cores.
 	warm_up() { $(BIN)/python -c "from rodsweep.solve.$$1 import warm_up; warm_up()"; }
-	warm_up cycle.reference_rod & cycle=$$!
+	warm_up cycle.rod_with_known_cycle & cycle=$$!
 	warm_up spectrum.path.neighbouring_rods
 	warm_up seldom_used_functions
 	wait $$cycle

@@ -39,8 +39,8 @@ from rodsweep.results.layouts.phase_diagram import (
     STABILITY_CLASSES,
     STABLE_STATES,
     bautin_curve_variables,
+    boundary_curve_variables,
     criticality_variables,
-    curve_variables,
     cycle_curve_variables,
 )
 from rodsweep.results.layouts.si_variables import VALIDITY_VARIABLES
@@ -408,7 +408,9 @@ def task_variables(task: str) -> str:
     rows = [(only.get(name, ""), variable_row(variable, dims)) for name, (variable, dims) in given.items()]
     points = f"`...` is ({', '.join(job.layout.parameters)}), or (point)."
     statuses = [[str(MISSING_STATUS), "`missing`", "not computed yet"]]
-    statuses += [[str(int(s)), f"`{s.name}`", s.sentence] for s in sorted(job.task.solver().statuses)]
+    statuses += [
+        [str(int(s)), f"`{s.name}`", s.sentence] for s in sorted(job.task.solver().possible_statuses)
+    ]
     parts = [f"## Variables of the file\n\n{points} {FILE_OF_ALL}\n\n", tables_by_condition(rows)]
     if task == "phase_diagram":
         parts += ["\n### Curves\n", CURVES, tables_by_condition(curve_rows(job))]
@@ -441,7 +443,7 @@ def curve_rows(job: Job) -> Iterator[tuple[str, list[str]]]:
     """(condition, row) of each variable of the curves of a phase diagram."""
     assert isinstance(job.config, PhaseDiagramConfig)
     line, row = job.config.plane_parameters
-    for variable in curve_variables(line, row).values():
+    for variable in boundary_curve_variables(line, row).values():
         is_of_limit = variable.name.startswith(("partial_beam", "filament"))
         yield (
             "diagrams over F and k1" if is_of_limit else "",
@@ -453,7 +455,7 @@ def curve_rows(job: Job) -> Iterator[tuple[str, list[str]]]:
     counts = UNLOCATED_EXTREMA_VARIABLE, LOST_CURVE_ENDS_VARIABLE
     for variable in (*(cycle_curves | DETACHED_ROW_VARIABLES_BY_NAME).values(), *counts):
         yield "phase_diagram.cycles: true", variable_row(variable, list(variable.extra_dimensions))
-    third = job.config.phase_diagram.bautin_parameter
+    third = job.config.phase_diagram.bautin_name_and_axis
     assert third is not None
     for variable in bautin_curve_variables(line, row, third[0]).values():
         yield "phase_diagram.bautin_along", variable_row(variable, list(variable.extra_dimensions))

@@ -14,7 +14,8 @@ COMPLEX_NAN = complex(np.nan, np.nan)
 
 
 def list_of(values: NDArray) -> list[Any]:
-    """Elements of an array, (n,) or (n, ..., m), as Python's numbers, in nested lists if it has several axes.
+    """Elements of an array, (n,) or (n, ..., m), as Python's numbers, in nested lists if the array has
+    several axes.
 
     In NumPy 2 the type of `tolist` is a union over the numbers of axes, which annotations leave open.
     """

@@ -19,7 +19,8 @@ MAX_QUOTED_VALUE_LENGTH = 60
 
 def short_repr(value: Any) -> str:
     """`repr` of a value for messages, on one line, cut to `MAX_QUOTED_VALUE_LENGTH` characters; a phrase if
-    `repr` fails because the value is too large. A date of YAML, 2024-01-01, is shown as text."""
+    `repr` fails because the value is too large or nested too deeply. A date of YAML, 2024-01-01, is shown as
+    text."""
     try:
         text = " ".join((str(value) if isinstance(value, date) else repr(value)).split())
     except (ValueError, RecursionError):  # an integer of thousands of digits, or a tree too deep
@@ -31,7 +32,7 @@ def short_repr(value: Any) -> str:
 class UserError(Exception):
     """Error that the command line prints as one sentence, without a traceback.
 
-    collective: whether every MPI rank of a run raises the error at the same statement.
+    is_collective: whether every MPI rank of a run raises the error at the same statement.
     """
 
     is_collective = False
@@ -42,7 +43,7 @@ class UserError(Exception):
         return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in super().__str__())
 
     def marked_collective(self) -> Self:
-        """Marks this error as collective, which means that every MPI rank raises a copy, and returns it."""
+        """Marks this error as collective (every MPI rank raises a copy), and returns the error."""
         self.is_collective = True
         return self
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 SIBILANT_ENDINGS = ("s", "x", "z", "ch", "sh")
 """Endings of nouns whose plural ends in "es"."""
 
-SHORTEST_DURATION_IN_SECONDS = 0.9995
+SHORTEST_DURATION_WRITTEN_IN_SECONDS = 0.9995
 """`duration` writes durations of at least this many seconds in seconds; in milliseconds, three digits would
 round such a duration to 1000 ms or more."""
 
@@ -40,13 +40,14 @@ def count_of_total(count: int, total: int, noun: str) -> str:
 
 
 def enumeration(parts: Sequence[str], conjunction: str = "and") -> str:
-    """The parts as an enumeration: `enumeration(["a", "b", "c"])` is "a, b and c"; empty without parts."""
+    """The parts as an enumeration, `conjunction` before the last: `enumeration(["a", "b", "c"])` is "a, b and
+    c"; empty without parts."""
     return f" {conjunction} ".join(filter(None, [", ".join(parts[:-1]), *parts[-1:]]))
 
 
 def duration(seconds: float) -> str:
     """A duration with three digits: in milliseconds below one second, else in seconds."""
-    return f"{1e3 * seconds:.3g} ms" if seconds < SHORTEST_DURATION_IN_SECONDS else f"{seconds:.3g} s"
+    return f"{1e3 * seconds:.3g} ms" if seconds < SHORTEST_DURATION_WRITTEN_IN_SECONDS else f"{seconds:.3g} s"
 
 
 def two_significant_digits(value: float) -> str:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from benchmarks.lapack import inverse_spectrum, whole_matrices
-from rodsweep.determinant.certificate.eigenvalue_box import eigenvalue_box
+from rodsweep.determinant.certificate.box_of_all_eigenvalues import box_of_all_eigenvalues
 from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.discretization.elements.resolution import expected_wave_number, resolution_for
 from rodsweep.model.dispersion import largest_growth_and_wave_number
@@ -64,7 +64,7 @@ def dense_count(rod: Rod) -> int | None:
     By LU and geev: where F is several times k2, QZ's finite eigenvalues are wrong on every mesh. The mesh is
     one for at least as many modes as are counted.
     """
-    real, imag = eigenvalue_box(rod)
+    real, imag = box_of_all_eigenvalues(rod)
     _, wave = largest_growth_and_wave_number(rod)
     count, modes = FEWEST_MODES, 0
     while count > modes:

@@ -26,12 +26,12 @@ def along(constant, field):
 
 def rate(form, X):
     """M dX/dt = A X + B(X, X)/2, shape (..., unknowns)."""
-    return X @ whole_A(form).T + form.bilinear_form(X, X) / 2
+    return X @ whole_A(form).T + form.bilinear_map(X, X) / 2
 
 
 def jacobian(form, X):
     """A + B(X, .) of one X, shape (unknowns, unknowns)."""
-    return whole_A(form) + form.bilinear_form(X[None], np.eye(form.unknown_count)).T
+    return whole_A(form) + form.bilinear_map(X[None], np.eye(form.unknown_count)).T
 
 
 def reaction(form, X):

@@ -68,7 +68,7 @@ def variables(page, task: str) -> dict[str, str]:
 def promised() -> dict[str, dict[str, dict[str, str]]]:
     """Every promised name of today with what it stands for: kind, section, name, meaning."""
     page = reference()
-    statuses = {task: page.whole(task).task.solver().statuses for task in CONFIG_CLASSES_BY_TASK}
+    statuses = {task: page.whole(task).task.solver().possible_statuses for task in CONFIG_CLASSES_BY_TASK}
     return {
         "config keys": {task: keys_of(config) for task, config in CONFIG_CLASSES_BY_TASK.items()},
         "parameters": {"": {name: p.unit for name, p in PARAMETERS.items()}},

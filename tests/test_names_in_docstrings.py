@@ -16,6 +16,7 @@ NAMES_OF_OTHER_PROGRAMS = set(
         "cfunc",
         "eigvals",
         "eigvalsh",
+        "leggauss",
         "geomspace",
         "head",
         "kill",

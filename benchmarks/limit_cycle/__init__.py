@@ -3,7 +3,7 @@
 from functools import partial
 from pathlib import Path
 
-from rodsweep.bench.limit_cycle.study import CYCLE_FOLLOWING_RACE, SETTLING_TO_CYCLE_RACE
+from rodsweep.bench.limit_cycle.study import CYCLE_FOLLOWING_RACE_NAME, SETTLING_TO_CYCLE_RACE_NAME
 from rodsweep.bench.peers import PeerContribution
 
 from ..auto import AUTO_SKIPPED, auto_program
@@ -17,11 +17,11 @@ def peers(quick: bool, folder: Path) -> PeerContribution:
     every, program = installed_families(), auto_program(folder, EQUATIONS)
     skipped = [] if CVODE in [family.name for family in every] else [CVODE_SKIPPED]
     return PeerContribution(
-        contenders={
-            CYCLE_FOLLOWING_RACE: [
+        contenders_by_race={
+            CYCLE_FOLLOWING_RACE_NAME: [
                 contender for family in every for contender in family.following_contenders()
             ],
-            SETTLING_TO_CYCLE_RACE: [
+            SETTLING_TO_CYCLE_RACE_NAME: [
                 contender for family in every for contender in family.settling_contenders()
             ],
         },

@@ -102,7 +102,7 @@ def continue_cycles(program: Path, first: Orbit, setting: AutoSetting, step: flo
 def rod_file(form: StressForm) -> bytes:
     """Content of the file `rod`, from which AUTO's equations read the mesh in space and the parameters."""
     rod, matrices = form.rod, form.mesh.node_matrices
-    numbers = np.array([rod.c1, rod.c2, rod.axial_drag, rod.rotational_drag])
+    numbers = np.array([rod.c1, rod.c2, rod.base_axial_drag, rod.base_rotational_drag])
     parts = (
         np.int32(form.mesh.node_count),
         matrices.transposed_differentiation_matrix,

@@ -37,7 +37,7 @@ def peers(quick: bool, folder: Path) -> PeerContribution:
     codes, skipped = continuation_codes(folder, quick)
     names = dict.fromkeys(code.method for code in codes)
     return PeerContribution(
-        contenders={ONSET: contenders(ONSET, quick), HOPF: contenders(HOPF, quick) + codes},
+        contenders_by_race={ONSET: contenders(ONSET, quick), HOPF: contenders(HOPF, quick) + codes},
         contender_notes=(SEARCHES, *(CODE_NOTES[name] for name in names)),
         skipped_peer_sentences=tuple(skipped),
     )

@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Unpack
 
-from ..config.document.call_arguments import refusing_wrong_arguments
+from ..config.document.call_argument_errors import refusing_wrong_arguments
 from ..config.parameters_section import DEFAULT_F_MAX
 from ..config.tasks import CONFIG_CLASSES_BY_TASK
 from ..errors import InputError
@@ -27,7 +27,7 @@ from .task_keywords import (
 
 if TYPE_CHECKING:
     from ..verdict.arm import ArmReport
-    from ..verdict.flutter import ThresholdsOverDrags
+    from ..verdict.flutter_over_drags import ThresholdsOverDrags
     from .answers.rod_portrait import RodPortrait
 
 ARM_EXAMPLE = 'rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s", pressure="2 kPa")'
@@ -67,7 +67,7 @@ class Arm(SlenderArm):
         An arm with a rectangular section may flutter earlier in the plane of its `width`, the motion of
         `turned`; `report` compares both.
         """
-        from ..verdict.flutter import thresholds_over_drags
+        from ..verdict.flutter_over_drags import thresholds_over_drags
 
         return thresholds_over_drags(self)
 
@@ -83,8 +83,8 @@ class Arm(SlenderArm):
     def replace(self, **changed: GivenQuantity | None) -> "Arm":
         """A copy of the arm with changed quantities.
 
-        The value None removes a quantity. A new force removes the pressure; width and height remove the
-        radius; segments remove radius, width, height and length.
+        None removes a quantity. A new quantity removes those that exclude it: force and pressure; width or
+        height and any radius; inner_radius and tip_radius; segments and all these sizes, and also length.
         """
         removed: dict[str, None] = {}
         for first, second in EXCLUSIVE_QUANTITIES:

@@ -9,15 +9,15 @@ import numpy as np
 import xarray as xr
 
 from ..config.arm.axes import FILE_AXIS_OF_QUANTITY
-from ..config.document.call_arguments import refusing_wrong_arguments
+from ..config.document.call_argument_errors import refusing_wrong_arguments
 from ..errors import InputError, short_repr
 from ..model.arm.quantities import ARM_FILE_VARIABLES
 from ..results.file.content_digests import SEAL_ATTRIBUTE, attribute_digests, variable_digest
 from ..results.file.current_state import (
+    failure_reasons_with_journals,
     insert_records,
-    journalled_points,
     read_file_and_journals,
-    reasons_attribute_with_journals,
+    records_only_in_journals,
 )
 from ..results.file.validation import (
     ResultHeader,
@@ -75,10 +75,10 @@ def _open_result_file(path: Path) -> xr.Dataset:
     data.attrs = {name: escape_control_characters(value) for name, value in data.attrs.items()}
     data = in_layout_order(data, header.layout, header.config)
     if journal_directory(path).is_dir():
-        recent = journalled_points(header, data["status"].values.ravel())
+        recent = records_only_in_journals(header, data["status"].values.ravel())
         for name in data.variables.keys() & (recent.dtype.names or ()):
             insert_records(data[name].values, str(name), recent)
-        data.attrs |= reasons_attribute_with_journals(header)
+        data.attrs |= failure_reasons_with_journals(header)
         data = with_checksums(data)
     return with_arm_indexes(data)
 
@@ -131,8 +131,8 @@ def _load_with_checksums(path: Path, header: ResultHeader) -> xr.Dataset:
 
 
 def with_checksums(data: xr.Dataset) -> xr.Dataset:
-    """The Dataset with the checksums of its variables and attributes as an attribute, by which readers verify
-    a file written by xarray."""
+    """The Dataset with an additional attribute, the checksums of all variables and attributes, by which
+    readers verify a file that xarray has written."""
     variables = {}
     for name, variable in data.variables.items():
         buffers = [np.ascontiguousarray(variable.values)]
@@ -144,7 +144,8 @@ def with_checksums(data: xr.Dataset) -> xr.Dataset:
 
 
 def view_of_dataset(data: xr.Dataset, path: Path) -> ResultView:
-    """View of a Dataset, which `show` and `plot` read; InputError if the Dataset is not a complete result.
+    """The view of a Dataset from which tables and figures are made; InputError if the Dataset is not a
+    complete result.
 
     path: name of the result for messages.
     """

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..config.arm.section import ArmConfig
 from ..config.base_config import Config
-from ..config.document.call_arguments import refusing_wrong_arguments, unknown_argument_error
+from ..config.document.call_argument_errors import refusing_wrong_arguments, unknown_argument_error
 from ..config.document.reading import validated_config, with_file_contents
 from ..config.document.refusals import similar_keys
 from ..config.material import MaterialConfig
@@ -23,8 +23,8 @@ from ..model.material.rod_material import DEFAULT_MATERIAL
 from ..solve.solve_lock import defer_signals
 from ..tasks.running.job import Job, job_of_config, machine_memory
 
-ArmKind = TypeVar("ArmKind", bound=SlenderArm)
-"""Type variable for the class of an arm: an argument and the result of a function have the same class."""
+AnyArm = TypeVar("AnyArm", bound=SlenderArm)
+"""Type variable for the class of an arm, for functions that return an arm of the class of their argument."""
 ARM_KEY_DEFAULTS = {
     "drag": DRAG_ESTIMATE_NAMES[0],
     "law": DEFAULT_MATERIAL.law,
@@ -94,7 +94,7 @@ def _replace_arm_by_quantities(task: str, tree: ConfigTree) -> None:
         parameters["arm"] = {name: value_of_yaml_types(value) for name, value in written.items()}
 
 
-def with_load_in_si(arm: ArmKind) -> ArmKind:
+def with_load_in_si(arm: AnyArm) -> AnyArm:
     """The arm with its load in SI units. For a load relative to flutter, the flutter threshold is computed
     first."""
     if arm.load_over_flutter is None:
@@ -225,7 +225,7 @@ def value_of_yaml_types(value: Any) -> Any:
 
 
 def keyword_value_of_yaml_types(key: str, value: Any) -> Any:
-    """`value` in the types of a YAML config; InputError for a masked value."""
+    """The value of the key `key` in the types of a YAML config; InputError for a masked value."""
     try:
         return value_of_yaml_types(value)
     except ValueError as error:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 from pydantic import ValidationError
 
-from ..config.document.call_arguments import refusing_wrong_arguments, unknown_argument_error
+from ..config.document.call_argument_errors import refusing_wrong_arguments, unknown_argument_error
 from ..config.document.refusals import message_of_problem, similar_keys, unknown_key_hint
 from ..config.material import MaterialConfig, with_profile_read
 from ..config.parameters_section import DEFAULT_F_MAX, DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS
@@ -111,11 +111,11 @@ class SoftRod:
     @refusing_wrong_arguments("rod.replace(F=40)")
     def replace(self, **changed: float) -> "SoftRod":
         """A copy of the rod with new values of some parameters, or of law, section or profile."""
-        values: dict[str, Any] = self._values | self._nondefault_material_keys | changed
+        values: dict[str, Any] = self._values | self._nondefault_material_values | changed
         return SoftRod(**values)
 
     @property
-    def _nondefault_material_keys(self) -> dict[str, Any]:
+    def _nondefault_material_values(self) -> dict[str, Any]:
         """Values of the keys of the section `material` that differ from their defaults, by key."""
         return {} if self._material is None else self._material.model_dump(exclude_defaults=True)
 
@@ -166,7 +166,7 @@ class SoftRod:
         from ..tasks.rod_portrait import PortraitRequest
         from .answers.rod_portrait import solve_portrait
 
-        description = DescribedRod(parameters=self._values, material=self._nondefault_material_keys)
+        description = DescribedRod(parameters=self._values, material=self._nondefault_material_values)
         request = PortraitRequest(rod=description, F_max=F_max, accuracy=accuracy)
         return solve_portrait(repr(self), request, progress)
 
@@ -199,13 +199,13 @@ class SoftRod:
         progress = options.pop("progress", None)
         names = (*CONFIG_CLASSES_BY_TASK[task].rod_parameters_used(options), *OPTIONAL_PARAMETER_NAMES)
         values: dict[str, Any] = {name: self._values[name] for name in names if name in self._values}
-        tree = config_tree(task, values | self._nondefault_material_keys | options)
+        tree = config_tree(task, values | self._nondefault_material_values | options)
         solved = solve_in_process(job_of_tree(tree), progress=progress)
         return Answer(repr(self), solved, solved.messages[0])
 
     def __repr__(self) -> str:
         values = [f"{name}={value:.15g}" for name, value in self._values.items()]
-        material = [f"{name}={short_repr(value)}" for name, value in self._nondefault_material_keys.items()]
+        material = [f"{name}={short_repr(value)}" for name, value in self._nondefault_material_values.items()]
         return f"Rod({', '.join([*values, *material])})"
 
     def __eq__(self, other: object) -> bool:
@@ -213,10 +213,10 @@ class SoftRod:
             return False
         if self._values != other._values:
             return False
-        return self._nondefault_material_keys == other._nondefault_material_keys
+        return self._nondefault_material_values == other._nondefault_material_values
 
     def __hash__(self) -> int:
-        return hash((*self._values.items(), repr(self._nondefault_material_keys)))
+        return hash((*self._values.items(), repr(self._nondefault_material_values)))
 
 
 def _material_section(values: Mapping[str, Any]) -> MaterialConfig | None:

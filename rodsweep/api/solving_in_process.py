@@ -25,7 +25,7 @@ from ..sweep.progress import (
     can_show_notebook_bar,
     display_listener,
 )
-from ..tasks.protocol import NamedArrays, Solver, SweepWideResult, SweepWideSolver
+from ..tasks.protocol import NamedArrays, Solver, SweepWideResult, SweepWideVariableSolver
 from ..tasks.running.in_memory import blas_thread_controller, view_in_memory
 from ..tasks.running.job import Job, plan_in_memory
 from ..tasks.running.unforeseen_exceptions import (
@@ -58,7 +58,7 @@ def solve_in_process(
     start_time = utc_time()
     if note is not None:
         solver = guarded_solver(solver, job.layout, note)
-    plan = plan_in_memory(job, solver.statuses)
+    plan = plan_in_memory(job, solver.possible_statuses)
     if job.config.task not in _tasks_with_compiled_solvers:
         solver.warm_up()
         _tasks_with_compiled_solvers.add(job.config.task)
@@ -72,7 +72,7 @@ def solve_in_process(
                 view = view_in_memory(job, plan, values)
                 sweep_wide = _solve_sweep_wide_variables(solver.sweep_wide_solver, view, display)
                 _replace_changed_points(sweep_wide, job, plan, values, messages)
-                reasons += changed_point_failure_reasons(sweep_wide, solver.statuses, job.point_text)
+                reasons += changed_point_failure_reasons(sweep_wide, solver.possible_statuses, job.point_text)
         except BaseException:  # a solve was interrupted, by Ctrl-C too: cached solvers may be half changed
             destroy_pooled_solvers()
             raise
@@ -82,16 +82,17 @@ def solve_in_process(
     return SolvedPoints(
         job=job,
         plan=plan,
-        possible_statuses=solver.statuses,
+        possible_statuses=solver.possible_statuses,
         values=values,
-        whole_file_variables=(*from_config, *sweep_wide.sweep_wide_variables, *from_points),
+        sweep_wide_variables=(*from_config, *sweep_wide.sweep_wide_variables, *from_points),
         run_attributes=_attributes_of_solve(start_time, reasons),
         messages=messages,
     )
 
 
 def _attributes_of_solve(start_time: str, reasons: Sequence[str]) -> dict[str, Any]:
-    """Attributes of a result whose solve ends now."""
+    """Attributes of a result whose solve began at `start_time` and ends now. reasons: reasons why points
+    failed."""
     from ..solve.backend import petsc
 
     return {
@@ -154,10 +155,10 @@ def _solve_groups(
 
 
 def _solve_sweep_wide_variables(
-    solver: SweepWideSolver, view: ResultView, display: Display
+    solver: SweepWideVariableSolver, view: ResultView, display: Display
 ) -> SweepWideResult:
-    """Variables that depend on all points, for example curves, and points that change. view: the solved
-    points."""
+    """Computes the variables that depend on all points, for example curves, and the new values of the points
+    that change. view: the solved points."""
     results = dict[int, NamedArrays]()
     while (items := solver.work_items(view, results)) and (chosen := items.items_to_solve(results)):
         name = items.item_label(chosen[0])
@@ -215,7 +216,7 @@ def progress_display(progress: bool | None, total: int | None, title: str) -> Di
     """Progress display of a solve, which appears after a second.
 
     progress: whether to display progress; None: only in a terminal or a notebook. total: number of points,
-    None if unknown. Raises InputError for any other value of `progress`.
+    None if unknown. title: text before the bar. Raises InputError for any other value of `progress`.
     """
     progress = keyword_value_of_yaml_types("progress", progress)
     if not (progress is None or isinstance(progress, bool)):

@@ -13,7 +13,7 @@ from typing import Any
 
 import xarray as xr
 
-from ..config.document.call_arguments import refusing_wrong_arguments
+from ..config.document.call_argument_errors import refusing_wrong_arguments
 from ..config.document.reading import tree_yaml
 from ..errors import EnvironmentIncomplete, InputError, short_repr
 from ..sweep.progress import Display
@@ -81,7 +81,8 @@ def sweep(
 
 
 def _warn_of_failed_points(indices: Sequence[int], error: Exception) -> None:
-    """Issues a RuntimeWarning with the traceback of an unforeseen exception."""
+    """Issues a RuntimeWarning with the traceback of an unforeseen exception at the points with flat
+    `indices`."""
     first = indices[0] + 1
     last_number = indices[-1] + 1
     points_text = f"point {first}" if first == last_number else f"points {first} to {last_number}"
@@ -92,8 +93,9 @@ def _warn_of_failed_points(indices: Sequence[int], error: Exception) -> None:
 
 
 def _refuse_idle_ranks(ranks: int, points: int | None) -> None:
-    """Raises InputError if there are more than RANKS_ALLOWED_FOR_ANY_SWEEP ranks and most of them would be
-    idle, because both the points and the processors of this machine are fewer. points: None if not known."""
+    """Raises InputError if the number of ranks exceeds RANKS_ALLOWED_FOR_ANY_SWEEP, the number of points, and
+    the number of processors of this machine. points: None if not known; every number of ranks is then
+    allowed."""
     max_ranks = max(os.cpu_count() or 1, points or 0, RANKS_ALLOWED_FOR_ANY_SWEEP)
     if points is not None and ranks > max_ranks:
         raise InputError(
@@ -150,8 +152,8 @@ def _run_with_progress(words: list[str], folder: str, display: Display) -> tuple
 
 
 def _run_failure_exception(launcher: str, status: int, errors: str, is_file_created: bool) -> Exception:
-    """Exception for a run that did not complete. is_file_created: whether the ranks had created the result
-    file. errors: standard error of the run."""
+    """Exception for a run that the command `launcher` started and that did not complete. status, errors: exit
+    status and standard error of the run. is_file_created: whether the ranks had created the result file."""
     lines = [line for line in errors.splitlines() if line.startswith("rodsweep: ")]
     if lines:
         return EXCEPTION_OF_EXIT_STATUS.get(status, RuntimeError)(lines[0].removeprefix("rodsweep: "))

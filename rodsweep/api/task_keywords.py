@@ -14,7 +14,7 @@ class TaskKeywords(TypedDict, total=False):
     title: str
     """Name of the run, printed by `check` and `show`."""
     progress: bool | None
-    """Whether to display progress; None: only in a terminal or a notebook. No key of a config."""
+    """Whether to display progress; None: only in a terminal or a notebook. Not a key of a config."""
 
 
 class SpectrumKeywords(TaskKeywords, total=False):

@@ -19,7 +19,7 @@ from ..results.file.validation import FORMAT_NUMBER, PROGRAM_NAME
 from ..results.file.view import ResultView
 from ..results.layouts.variables import FilledVariable
 from ..solve.status import PointStatus
-from ..tasks.running.in_memory import blas_kernels, stored_variables, view_in_memory
+from ..tasks.running.in_memory import blas_kernels, stored_coordinates_and_variables, view_in_memory
 from ..tasks.running.job import Job, file_attributes
 from .dataset import in_layout_order, view_of_dataset, with_arm_indexes, with_checksums
 
@@ -59,7 +59,7 @@ class SolvedPoints:
     """All statuses that a point of the task can have."""
     values: Mapping[str, np.ndarray] = field(repr=False)
     """Variables of the layout by name, shape (points, own dimensions)."""
-    whole_file_variables: Sequence[FilledVariable] = field(repr=False)
+    sweep_wide_variables: Sequence[FilledVariable] = field(repr=False)
     """Variables of the file that do not belong to single points."""
     run_attributes: Mapping[str, Any]
     """Attributes with the times, the host and the PETSc options of the solve."""
@@ -69,7 +69,9 @@ class SolvedPoints:
     @cached_property
     def dataset(self) -> xr.Dataset:
         """The Dataset of the points, as xarray would read it from a result file."""
-        coordinates, variables = stored_variables(self.plan, self.values, self.whole_file_variables)
+        coordinates, variables = stored_coordinates_and_variables(
+            self.plan, self.values, self.sweep_wide_variables
+        )
         header = {
             "program": PROGRAM_NAME,
             "format": FORMAT_NUMBER,
@@ -83,7 +85,7 @@ class SolvedPoints:
     @cached_property
     def view(self) -> ResultView:
         """The view of the points that tables read."""
-        return view_in_memory(self.job, self.plan, self.values, self.whole_file_variables)
+        return view_in_memory(self.job, self.plan, self.values, self.sweep_wide_variables)
 
     def __reduce__(self) -> tuple[type[DatasetResult], tuple[xr.Dataset]]:
         return DatasetResult, (self.dataset,)

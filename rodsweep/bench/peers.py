@@ -23,9 +23,9 @@ from types import ModuleType
 from ..errors import InputError
 from .study import Measurement, TimedMethod
 
-PEER_PACKAGE_NAME = "benchmarks"
+PEERS_PACKAGE_NAME = "benchmarks"
 """Name of the folder of peers in a checkout, and name under which its package is imported from any folder."""
-CHECKOUT_FOLDER = Path(__file__).parents[2]
+RODSWEEP_CHECKOUT_FOLDER = Path(__file__).parents[2]
 """Root folder of the checkout from which rodsweep runs; without a checkout, the parent of the installed
 package."""
 PEER_PHRASES_BY_STUDY = {
@@ -42,7 +42,7 @@ MakePeerSection = Callable[[int], tuple[list[str], list[Measurement]]]
 class PeerContribution:
     """Contribution of the peers to one study."""
 
-    contenders: Mapping[str, Sequence[TimedMethod]] = field(default_factory=dict)
+    contenders_by_race: Mapping[str, Sequence[TimedMethod]] = field(default_factory=dict)
     """Methods of each race, by the name of the race, with settings from the coarsest to the finest; the study
     defines the races and their cases."""
     section_functions: Sequence[MakePeerSection] = ()
@@ -54,7 +54,7 @@ class PeerContribution:
 
     def contenders_of_race(self, race: str) -> list[TimedMethod]:
         """Contenders of the race with the name `race`; empty if no peer takes part."""
-        return list(self.contenders.get(race, ()))
+        return list(self.contenders_by_race.get(race, ()))
 
 
 NO_PEERS = PeerContribution()
@@ -70,24 +70,26 @@ def peer_package(directory: Path | None) -> ModuleType | None:
     """
     if directory is not None:
         return _import_directory(directory)
-    package_path = CHECKOUT_FOLDER / PEER_PACKAGE_NAME
-    is_checkout = (CHECKOUT_FOLDER / "pyproject.toml").is_file() and (package_path / "__init__.py").is_file()
+    package_path = RODSWEEP_CHECKOUT_FOLDER / PEERS_PACKAGE_NAME
+    is_checkout = (RODSWEEP_CHECKOUT_FOLDER / "pyproject.toml").is_file() and (
+        package_path / "__init__.py"
+    ).is_file()
     return _import_directory(package_path) if is_checkout else None
 
 
 def _import_directory(directory: Path) -> ModuleType:
     error = InputError(
-        f"--peers {directory} must be the folder `{PEER_PACKAGE_NAME}` of a checkout of rodsweep"
+        f"--peers {directory} must be the folder `{PEERS_PACKAGE_NAME}` of a checkout of rodsweep"
     )
     start = directory.resolve() / "__init__.py"
-    imported = sys.modules.get(PEER_PACKAGE_NAME)
+    imported = sys.modules.get(PEERS_PACKAGE_NAME)
     if imported is not None and imported.__file__ and Path(imported.__file__).resolve() == start:
         return imported
-    spec = spec_from_file_location(PEER_PACKAGE_NAME, start, submodule_search_locations=[str(start.parent)])
+    spec = spec_from_file_location(PEERS_PACKAGE_NAME, start, submodule_search_locations=[str(start.parent)])
     if not start.is_file() or spec is None or spec.loader is None:
         raise error
     package = module_from_spec(spec)
-    sys.modules[PEER_PACKAGE_NAME] = package  # needed by imports in its modules
+    sys.modules[PEERS_PACKAGE_NAME] = package  # needed by imports in its modules
     spec.loader.exec_module(package)
     if not hasattr(package, "versions"):
         raise error
@@ -97,7 +99,7 @@ def _import_directory(directory: Path) -> ModuleType:
 def peers_of_study(package: ModuleType | None, study: str, quick: bool, folder: Path) -> PeerContribution:
     """Contribution of the installed peers to the study with the name `study`. folder: empty directory in
     which programs are compiled. Returns NO_PEERS without a package, or if the package has no such study."""
-    module = f"{PEER_PACKAGE_NAME}.{study}"
+    module = f"{PEERS_PACKAGE_NAME}.{study}"
     if package is None or find_spec(module) is None:
         return NO_PEERS
     peers: PeerContribution = import_module(module).peers(quick, folder)
@@ -111,6 +113,6 @@ def left_out_peers_sentence(studies: Sequence[str]) -> str:
         f"{name}: {PEER_PHRASES_BY_STUDY[name]}" for name in studies if name in PEER_PHRASES_BY_STUDY
     )
     return missing and (
-        f"The peers are left out ({missing}): give their folder, `{PEER_PACKAGE_NAME}` of a checkout of "
-        f"rodsweep, as `--peers CHECKOUT/{PEER_PACKAGE_NAME}`."
+        f"The peers are left out ({missing}): give their folder, `{PEERS_PACKAGE_NAME}` of a checkout of "
+        f"rodsweep, as `--peers CHECKOUT/{PEERS_PACKAGE_NAME}`."
     )

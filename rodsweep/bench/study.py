@@ -43,9 +43,10 @@ class Measurement:
     """Time and error of a method at one setting on one case. case, method, setting, group: names, as in
     `TimedMethod`.
 
-    seconds: median time of the rounds. error: relative error; nan if there is no error to measure, inf if the
-    method failed. failure: reason for the failure. least_seconds: minimum time of the rounds, which depends
-    less on other programs. extra_columns: further numbers by name.
+    seconds: median time of the rounds, in s: processor time, or clock time in the benchmark of sweeps. error:
+    relative error; nan if there is no error to measure, inf if the method failed. failure: reason for the
+    failure. least_seconds: minimum time of the rounds, in s, which depends less on other programs.
+    extra_columns: further numbers by name.
     """
 
     case: str
@@ -104,15 +105,15 @@ def measurement_columns(measurements: Sequence[Measurement]) -> Table:
 
 
 class TimedRuns(NamedTuple, Generic[Outcome]):
-    """Timed runs of a function. outcome: result of the first run. seconds: processor time of every timed run,
-    in s."""
+    """Timed runs of a function. outcome: result of the first run. processor_seconds: processor time of every
+    timed run, in s."""
 
     outcome: Outcome
-    seconds: tuple[float, ...]
+    processor_seconds: tuple[float, ...]
 
     @property
     def median_seconds(self) -> float:
-        return median(self.seconds)
+        return median(self.processor_seconds)
 
 
 def time_runs(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> list[TimedRuns[Outcome]]:
@@ -128,15 +129,16 @@ def time_runs(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> l
     for i in timing_order(rounds):
         if first[i].median_seconds < MAX_CACHE_SENSITIVE_SECONDS:
             runs[i]()
-        seconds[i] += _time_one_run(runs[i]).seconds
+        seconds[i] += _time_one_run(runs[i]).processor_seconds
     return [
-        TimedRuns(a.outcome, tuple(further) or a.seconds) for a, further in zip(first, seconds, strict=True)
+        TimedRuns(a.outcome, tuple(further) or a.processor_seconds)
+        for a, further in zip(first, seconds, strict=True)
     ]
 
 
 def timing_order(rounds: Sequence[int]) -> Iterator[int]:
     """Indices of functions in the order of timing: round by round, so that a slow period of the machine
-    affects all functions."""
+    affects all functions. rounds: number of rounds of each function."""
     for round_number in range(max(rounds)):
         yield from (i for i, round_count in enumerate(rounds) if round_number < round_count)
 
@@ -163,7 +165,7 @@ def result_or_error(run: Callable[[Any], Outcome], case: Any) -> Outcome | Excep
         return error
 
 
-ErrorMeasure = Callable[[Any], dict[str, Any]]
+ErrorMeasuringFunction = Callable[[Any], dict[str, Any]]
 """Function from a result of a method to a dictionary with `error` and further fields of `Measurement`."""
 
 
@@ -172,12 +174,16 @@ class CaseWithErrorMeasure(NamedTuple):
 
     name: str
     case: Any
-    measure_error: ErrorMeasure
+    measure_error: ErrorMeasuringFunction
     """Function from a method's result on the case to the fields of `Measurement`."""
 
 
 def measure_case(
-    name: str, case: Any, contenders: Sequence[TimedMethod], round_count: int, measure_error: ErrorMeasure
+    name: str,
+    case: Any,
+    contenders: Sequence[TimedMethod],
+    round_count: int,
+    measure_error: ErrorMeasuringFunction,
 ) -> list[Measurement]:
     """Measurements of all contenders on one case, timed in turn. measure_error: function from a method's
     result to the fields of `Measurement`."""
@@ -197,7 +203,7 @@ def measure_cases(
         failure_fields = {"failure": f"failed ({type(timed.outcome).__name__})"}
         fields = {"error": inf} | (failure_fields if failed else entry.measure_error(timed.outcome))
         names = {"case": entry.name, "method": c.method, "setting": c.setting, "group": c.group}
-        fields |= names | {"seconds": timed.median_seconds, "least_seconds": min(timed.seconds)}
+        fields |= names | {"seconds": timed.median_seconds, "least_seconds": min(timed.processor_seconds)}
         measurements.append(Measurement(**fields))
     return measurements
 

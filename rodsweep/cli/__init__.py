@@ -18,11 +18,11 @@ from contextlib import suppress
 from typing import Any
 
 # Ctrl-C while the modules below are loaded ends the program without the traceback of an import.
-_ends_quietly = (
+_is_quiet_if_interrupted = (
     signal.getsignal(signal.SIGINT) is signal.default_int_handler
     and threading.current_thread() is threading.main_thread()
 )
-if _ends_quietly:
+if _is_quiet_if_interrupted:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 # Each rank is one process on one core: threads inside its BLAS would compete with the other ranks.
@@ -39,7 +39,7 @@ from .launchers import prints_messages  # noqa: E402 - after the environment is 
 from .output_commands import explore, export, plot, portrait, report  # noqa: E402 - after the environment is set
 from .usage_errors import usage_error_text  # noqa: E402 - after the environment is set
 
-if _ends_quietly:
+if _is_quiet_if_interrupted:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 __all__ = ["commands", "main"]
@@ -102,9 +102,9 @@ def main() -> None:
 
 
 def _prepare_streams() -> None:
-    """Opens /dev/null for standard streams that were closed before the start, as by `>&-` in a shell.
-    Otherwise the next opened file would get the file descriptor of a closed stream, and C libraries would
-    write messages into this file."""
+    """Prepares the standard streams. /dev/null replaces streams that were closed before the start, as by
+    `>&-` in a shell. Otherwise the next opened file would get the file descriptor of a closed stream, and C
+    libraries would write messages into this file."""
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
             setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_RDWR), mode))

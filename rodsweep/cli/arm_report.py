@@ -15,8 +15,8 @@ PARAGRAPH_STYLES = {"headline": "bold", "warning": "yellow"}
 def print_arm_report(typed_values: dict[str, str | None], poisson: float, segments: tuple[str, ...]) -> None:
     """Prints the report on an arm.
 
-    typed_values: values of the options by name of the quantity or law, None if not given. Raises InputError,
-    whose message names the options.
+    typed_values: values of the options by name of the quantity or law, None if not given. Raises InputError
+    for invalid quantities, with the names of the options in the message.
     """
     from ..model.arm.arm import SlenderArm
     from ..verdict.arm import arm_report

@@ -27,15 +27,15 @@ from ..wording import count_of_total, counted
 @np.errstate(over="ignore")
 def print_job_check(job: Job) -> None:
     """Prints the points, the modelled effects and the expected cost of a valid config. Numbers of extreme
-    rods that overflow are limited in the estimates."""
+    rods may overflow; the estimates limit these numbers."""
     console = Console(highlight=False, markup=False)
-    console.print(f"{job.path}: valid. {job.config.title}".rstrip())
-    console.print(job.task.check_headline())
+    console.print(f"{job.config_path}: valid. {job.config.title}".rstrip())
+    console.print(job.task.headline_of_check())
     if arms := job.task.arms_line():
         print_lines(console, [arms])
     print_lines(console, _arm_lines(job) if job.quantity_variables else [])
     table = Table("part", "modelled", "why", box=None, pad_edge=False)
-    for quantity, is_modelled, reason in job.task.check_rows():
+    for quantity, is_modelled, reason in job.task.rows_of_check():
         table.add_row(quantity, "yes" if is_modelled else "no", reason)
     console.print(table)
     cost = job.task.cost()

@@ -74,7 +74,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
 @click.argument("output", type=FILE_TYPE)
 @click.argument("shards", type=FILE_TYPE, nargs=-1, required=True, metavar="SHARD...")
 def merge(output: Path, shards: tuple[Path, ...]) -> None:
-    """Put the points of all SHARD files into OUTPUT: parts of a sweep, or grids that form a larger grid."""
+    """Join the SHARD files, parts of a sweep or grids that form a larger grid, into the file OUTPUT."""
     from ..errors import STOPPED_EXIT_STATUS
     from ..results.file.combination.merge import merge as merge_files
     from ..tasks.running.job import plan_without_solver

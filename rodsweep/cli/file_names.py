@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from ..errors import InputError
-from ..results import RESULT_ENDINGS
+from ..results import RESULT_SUFFIXES
 
 
 class FileNameType(click.Path):
@@ -31,10 +31,10 @@ OUTPUT_OPTION_NAMES = ("-o", "--output")
 
 def result_file_path(path: Path) -> Path:
     """Path of a result file, symbolic links resolved; InputError for a directory or a wrong ending."""
-    allowed_endings = ", ".join(RESULT_ENDINGS)
+    allowed_endings = ", ".join(RESULT_SUFFIXES)
     if path.is_dir() or not path.name:
         raise InputError(f"{path} is a directory; name a file for results, which ends in {allowed_endings}")
-    if path.suffix not in RESULT_ENDINGS:
+    if path.suffix not in RESULT_SUFFIXES:
         raise InputError(
             f"{path} is not a name for results, which are HDF5: it must end in {allowed_endings}"
         )

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..bench.sweep.launch import FIRST_RANK_MEMORY_PREFIX, KILLED, OTHER_RANKS_MEMORY_PREFIX, SOLVED
+from ..bench.sweep.launch import FIRST_RANK_MEMORY_FILE_PREFIX, KILLED, OTHER_RANKS_MEMORY_FILE_PREFIX, SOLVED
 from ..tasks import TASKS
 from ..tasks.protocol import Solver
 from ..tasks.spectrum import SpectrumTask
@@ -29,7 +29,7 @@ repetition at this distance."""
 
 
 @dataclass(frozen=True, slots=True)
-class TabulatedSpectra(SpectrumTask):
+class TabulatedSpectrumTask(SpectrumTask):
     """The task spectrum with random eigenvalues from a table, so that all measured time belongs to the sweep.
 
     All eigenvalues are stable, because a sweep would spend time on locating changes of stability.
@@ -69,7 +69,7 @@ class TabulatedSpectra(SpectrumTask):
 
 def record_memory(directory: Path) -> None:
     """Writes the peak memory of this rank in bytes into a file of the directory."""
-    prefix = FIRST_RANK_MEMORY_PREFIX if prints_messages() else OTHER_RANKS_MEMORY_PREFIX
+    prefix = FIRST_RANK_MEMORY_FILE_PREFIX if prints_messages() else OTHER_RANKS_MEMORY_FILE_PREFIX
     (directory / f"{prefix}-{os.getpid()}").write_text(str(peak_memory()))
 
 
@@ -92,7 +92,7 @@ def run_and_record_memory() -> None:
     notes = Path(directory)
     if kind != SOLVED:
         TASKS["spectrum"] = partial(
-            TabulatedSpectra, memory_directory_before_kill=notes if kind == KILLED else None
+            TabulatedSpectrumTask, memory_directory_before_kill=notes if kind == KILLED else None
         )
     sys.argv = ["rodsweep", *command]
     try:

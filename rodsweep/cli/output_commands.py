@@ -14,9 +14,9 @@ from .arm_options import NUMBER_TYPE, arm_options, parameter_options
 from .file_names import FILE_TYPE, OUTPUT_OPTION_NAMES, link_target, with_suffix_replaced
 from .portrait_rod import (
     QUANTITIES_WITHOUT_OPTION,
+    portrait_option_names_in_errors,
     rod_of_options,
     solve_with_progress,
-    with_portrait_option_names,
 )
 
 PORT_TYPE = click.IntRange(0, 65535)
@@ -164,7 +164,7 @@ def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any)
     quantities = {name: value for name, value in options.items() if name in (*UNITS_AND_EXAMPLES, "poisson")}
     quantities["segments"] = options["segment"] or None
     with (
-        with_portrait_option_names(),
+        portrait_option_names_in_errors(),
         solve_with_progress(ProgressReporter(None, "portrait", "solved"), solve_job_in_memory) as solve,
     ):
         rod = rod_of_options(parameters, quantities, material)

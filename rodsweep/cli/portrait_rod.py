@@ -72,7 +72,7 @@ def rod_of_options(
 
 
 @contextmanager
-def with_portrait_option_names() -> Iterator[None]:
+def portrait_option_names_in_errors() -> Iterator[None]:
     """Within this context, an InputError names the options of `rodsweep portrait` instead of keys of a
     config."""
     try:

@@ -18,7 +18,7 @@ from ..tasks.protocol import Task
 
 
 @dataclass(slots=True)
-class _SharedComputations:
+class _ComputationsAmongRanks:
     """Computations divided among the ranks of `ranks`. Each rank omits its remaining items after a stop
     signal, recorded in `stop`."""
 
@@ -49,7 +49,7 @@ def plan_with_variables_from_config(
 
     None if a stop signal came before the computation ended.
     """
-    computations = _SharedComputations(ranks, stop)
+    computations = _ComputationsAmongRanks(ranks, stop)
     variables = task.variables_from_config(computations.gather_in_order)
     return None if computations.any_rank_stopped else replace(plan, variables_from_config=lambda: variables)
 
@@ -64,7 +64,7 @@ def shared_flutter_forces(config: Config, ranks: Ranks, stop: StopRequest) -> Fl
         # A rank without a rod must start PETSc with the others.
         ranks.require_on_all_ranks(require_solvers)
         ranks.require_on_all_ranks(start_solvers)
-    computations = _SharedComputations(ranks, stop)
+    computations = _ComputationsAmongRanks(ranks, stop)
     forces = computations.gather_in_order(rods, flutter_force_of_rod)
     return None if computations.any_rank_stopped else dict(zip(rods, forces, strict=True))
 

@@ -4,8 +4,8 @@ import click
 
 
 class CommandGroupWithSuggestions(click.Group):
-    """A group of commands that refuses an unknown command with the most similar command, or a list of all
-    commands."""
+    """A group of commands. The error message for an unknown command suggests the most similar command, or
+    lists all commands."""
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -22,7 +22,7 @@ class CommandGroupWithSuggestions(click.Group):
 
 
 def usage_error_text(error: click.UsageError) -> str:
-    """Message of a click error; for an unknown option that is a diameter, with the option of the radius."""
+    """Message for a click error. For an option that names a diameter it suggests the option of the radius."""
     if not isinstance(error, click.NoSuchOption) or error.ctx is None:
         return error.format_message()
     from ..model.arm.quantities import radius_name_of_diameter

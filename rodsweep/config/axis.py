@@ -38,7 +38,7 @@ AXIS_SCHEMA: dict[str, Any] = {
     ],
 }
 """JSON schema of the values that `as_axis` accepts."""
-QUANTITY_DIGITS = 15
+QUANTITY_ROUNDING_DIGITS = 15
 """Number of significant digits to which quantities in SI units are rounded: unit conversion changes the
 16th."""
 
@@ -91,8 +91,8 @@ class Axis(StrictConfigSection):
         return self.model_copy(update={"factor": scale * self.factor})
 
     def array(self) -> Array:
-        """Values of the axis in increasing order, (size,); for an arm's quantity rounded to QUANTITY_DIGITS
-        digits."""
+        """Values of the axis in increasing order, (size,); for an arm's quantity rounded to
+        QUANTITY_ROUNDING_DIGITS digits."""
         if self.values is not None:
             values = np.array(self.values)
         elif self.spacing == "log":
@@ -102,7 +102,7 @@ class Axis(StrictConfigSection):
         if self.written is None:
             return values
         # Rounded, so that 10 cm between 4 cm and 12 cm is 0.1 m, as a user would type, and not 0.099999...
-        return np.array([float(f"{value:.{QUANTITY_DIGITS}g}") for value in values.tolist()])
+        return np.array([float(f"{value:.{QUANTITY_ROUNDING_DIGITS}g}") for value in values.tolist()])
 
 
 def as_axis(value: Any) -> Axis:

@@ -15,7 +15,7 @@ from ..model.parameters import (
     NONLINEAR_ROD_PARAMETER_NAMES,
     OPTIONAL_PARAMETER_NAMES,
 )
-from .arm.shape import MATERIAL_KEYS, SHAPE_KEYS, refuse_compressible, refuse_misused_shape
+from .arm.shape import MATERIAL_KEYS, NONUNIFORM_ARM_KEYS, refuse_compressible, refuse_misused_shape
 from .material import MaterialConfig
 from .parameters_section import LinearParametersSection, ParametersSection
 from .values import Number, StrictConfigSection, Text
@@ -91,13 +91,14 @@ class Config(StrictConfigSection):
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
-        """Names of the parameters of a rod that the task uses."""
+        """Names of the parameters of a rod that the task uses. options: options of the task, not
+        validated."""
         return NONLINEAR_ROD_PARAMETER_NAMES
 
     @property
     def remedies_of_options_without_effect(self) -> dict[str, str]:
-        """Options without effect in this config, by name; the value is the setting with which the option
-        would have an effect."""
+        """For each option without effect in this config, by name: the setting with which the option would
+        have an effect."""
         return {}
 
     def refuse_options_without_effect(self) -> None:
@@ -156,7 +157,9 @@ class Config(StrictConfigSection):
         arm = self.parameters.arm
         if arm is None:
             return self
-        key = next((name for name in (*MATERIAL_KEYS, *SHAPE_KEYS) if getattr(arm, name) is not None), "")
+        key = next(
+            (name for name in (*MATERIAL_KEYS, *NONUNIFORM_ARM_KEYS) if getattr(arm, name) is not None), ""
+        )
         if self.material is not None and key:
             raise ValueError(
                 f"material and parameters.arm.{key} are both given; give law and section in parameters.arm"

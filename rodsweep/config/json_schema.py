@@ -142,8 +142,8 @@ def all_keys_given_condition(names: Iterable[str], *conditions: Schema) -> Schem
 def with_axis_bounds(
     schema: Schema, bound: Mapping[str, float], allowed_texts: tuple[str, ...] = ()
 ) -> Schema:
-    """Copy of the JSON schema of an axis, with bounds on every number. allowed_texts: allowed spellings of
-    inf."""
+    """Copy of the JSON schema of an axis, with bounds on every number. bound: bounds, by keyword of JSON
+    schema. allowed_texts: allowed spellings of inf."""
     copy = deepcopy(schema)
     for node in iterate_subschemas(copy):
         alternatives = node.get("anyOf", [])
@@ -159,7 +159,8 @@ def with_axis_bounds(
 
 
 def add_parameter_bounds(properties: Schema, axis: Schema) -> None:
-    """Adds the bounds of the parameters to the JSON schemas `properties` of a section's keys, in place."""
+    """Adds the bounds of the parameters to the JSON schemas `properties` of a section's keys, in place. axis:
+    JSON schema of an axis."""
     for name, parameter in PARAMETERS.items():
         if name in properties:
             alternatives = [
@@ -176,7 +177,7 @@ def add_parameter_bounds(properties: Schema, axis: Schema) -> None:
 
 def add_arm_conditions(section: Schema, axis: Schema) -> None:
     """Adds the conditions of an arm to its JSON schema `section`, in place: unit and sign of every quantity,
-    exactly one kind of cross-section, and at most one load."""
+    exactly one kind of cross-section, and at most one load. axis: JSON schema of an axis."""
     for name, key in section["properties"].items():
         bound = BOUNDS_OF_ARM.get(name, {})
         if "anyOf" in key:
@@ -210,8 +211,8 @@ def add_arm_conditions(section: Schema, axis: Schema) -> None:
 def points_condition(parameter_names: Iterable[str], lists: bool) -> Schema:
     """JSON schema of the condition that `parameters` defines points: by axes, an arm, or a file of points.
 
-    lists: whether the task accepts a file of points. If F is needed, either the arm has a load or F is given;
-    otherwise both are forbidden.
+    parameter_names: parameters that the task needs. lists: whether the task accepts a file of points. If F is
+    needed, either the arm has a load or F is given; otherwise both are forbidden.
     """
     axes = tuple(name for name in parameter_names if PARAMETERS[name].default is None)
     loads = [all_keys_given_condition([name]) for name in LOAD_KEYS]
@@ -235,7 +236,7 @@ def points_condition(parameter_names: Iterable[str], lists: bool) -> Schema:
 
 
 def iterate_subschemas(schema: Any) -> Iterable[Schema]:
-    """Yields all mappings within a JSON schema, including the schema."""
+    """Yields all mappings within a JSON schema, including the schema itself."""
     if isinstance(schema, dict):
         yield schema
     if isinstance(schema, dict | list):

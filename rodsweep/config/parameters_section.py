@@ -28,7 +28,8 @@ def refuse_conflicting_keys(arm: "ArmConfig", needs_force: bool, given_parameter
     """Raises ValueError if the load does not suit the task, or if k2 is given in addition to an axis of
     Poisson's ratio.
 
-    given_parameters: names of the parameters that replace the arm's values.
+    needs_force: whether the task needs a load. given_parameters: names of the parameters that replace the
+    arm's values.
     """
     loads = ["parameters.F"] if "F" in given_parameters else []
     loads += [f"parameters.arm.{name}" for name in LOAD_KEYS if getattr(arm, name) is not None]
@@ -172,7 +173,7 @@ class ParametersSection(LinearAxesSection):
     def _given_values(self) -> dict[str, Any]:
         return {name: getattr(self, name, None) for name in PARAMETERS}
 
-    def require_points(self, names: tuple[str, ...], or_points: bool = True) -> None:
+    def require_one_definition_of_points(self, names: tuple[str, ...], or_points: bool = True) -> None:
         """Raises ValueError unless the section defines points in exactly one way: by axes of all `names`, by
         an arm, or by a file of points. Also raises ValueError for an invalid arm or a grid that is too large.
 
@@ -184,7 +185,7 @@ class ParametersSection(LinearAxesSection):
             keys_text = f"parameters.points and parameters.{next(iter(self.axes))}"
             raise ValueError(f"{keys_text} are both given; give the axes or the file, not both")
         if self.arm is not None:
-            self._require_arm(self.arm, "F" in names)
+            self._require_arm_that_defines_points(self.arm, "F" in names)
             return
         missing = [name for name in names if name not in self.axes]
         if missing and self.points is None:
@@ -193,9 +194,9 @@ class ParametersSection(LinearAxesSection):
                 f"parameters.{missing[0]} is missing; give {enumeration(names, 'and')}{points_hint}"
             )
 
-    def _require_arm(self, arm: ArmConfig, needs_force: bool) -> None:
-        """Raises ValueError unless the arm, with the parameters given in addition to the arm, defines
-        points."""
+    def _require_arm_that_defines_points(self, arm: ArmConfig, needs_force: bool) -> None:
+        """Raises ValueError unless the arm and the further parameters of the section define points.
+        needs_force: whether the task needs a load."""
         arm.require_allowed_values()
         refuse_conflicting_keys(arm, needs_force, self.given_axes)
         varied_axes = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from ..model.compiled.compilation import compiled
 from ..model.compiled.kernel_constants import KernelConstants
-from .exponents import MACHINE_EPSILON, HyperbolicFunctions, hyperbolic_functions, modulus
+from .exponents import MACHINE_EPSILON, ScaledHyperbolicFunctions, modulus, scaled_hyperbolic_functions
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,8 +32,9 @@ class EvenFunctionSettings(KernelConstants):
     """Bound of the relative rounding error of S, the logarithm of the scale, divided by
     TWO_MACHINE_EPSILONS."""
     max_log_scale_without_rounding: float = 8.0
-    """Up to this S the other rounding errors of D exceed the rounding error of exp(-S). At a larger S only
-    the exponentially small eigenvalues of strongly pulled rods depend on exp(-S)."""
+    """Up to this S, the logarithm of the scale of D, the other rounding errors of D exceed the rounding error
+    of exp(-S). At a larger S only the exponentially small eigenvalues of strongly pulled rods depend on
+    exp(-S)."""
 
     def __post_init__(self) -> None:
         n = self.series_term_count
@@ -49,28 +50,29 @@ EVEN_FUNCTION_SETTINGS = EvenFunctionSettings()
 
 class EvenFunctionValues(NamedTuple):
     """The functions s(M, P^2) and d(M, P^2) of this module with their derivatives, all times exp(-S), S =
-    `log_scale`. s_M = ds/dM, d_M = dd/dM, d_P_squared_over_4 = (dd/dP^2)/4."""
+    `log_scale`. ds_dM = ds/dM, dd_dM = dd/dM, quarter_of_dd_dP_squared = (dd/dP^2)/4."""
 
     log_scale: float
     s: complex
     d: complex
-    s_M: complex
-    d_M: complex
-    d_P_squared_over_4: complex
+    ds_dM: complex
+    dd_dM: complex
+    quarter_of_dd_dP_squared: complex
 
 
 @compiled
 def _rounding_errors_by_roots(
     squares: tuple[complex, complex, complex, complex],
     difference: complex,
-    functions_of_u: HyperbolicFunctions,
-    functions_of_v: HyperbolicFunctions,
+    functions_of_u: ScaledHyperbolicFunctions,
+    functions_of_v: ScaledHyperbolicFunctions,
     results: tuple[complex, complex],
     roundings: tuple[float, float, float],
 ) -> tuple[float, float]:
-    """Rounding errors of s and of d as computed by `even_functions_by_roots`, to first order. squares: (M,
-    P^2, u, v). difference: u - v. functions_of_u, functions_of_v: hyperbolic functions of sqrt(u) and
-    sqrt(v). results: (s, d). roundings: (exp(-S), rounding error of M, rounding error of P^2)."""
+    """Returns (rounding error of s, rounding error of d) as computed by `even_functions_by_roots`, to first
+    order. squares: (M, P^2, u, v), u = q1^2 and v = q2^2. difference: u - v. functions_of_u, functions_of_v:
+    hyperbolic functions of sqrt(u) and sqrt(v). results: (s, d). roundings: (exp(-S), rounding error of M,
+    rounding error of P^2)."""
     M = modulus(squares[0])
     square = modulus(squares[1])
     u = modulus(squares[2])
@@ -125,8 +127,8 @@ def even_functions_by_roots(
     S = q1.real + q2.real
     # The 1 that is subtracted from cosh q1 cosh q2, scaled by exp(-S) like the product.
     scaled_one = math.exp(-S)
-    functions_of_u = hyperbolic_functions(u, q1)
-    functions_of_v = hyperbolic_functions(v, q2)
+    functions_of_u = scaled_hyperbolic_functions(u, q1)
+    functions_of_v = scaled_hyperbolic_functions(v, q2)
     cosh1, first1, second1 = functions_of_u
     cosh2, first2, second2 = functions_of_v
     # With z+- = (q1 +- q2)^2 the even functions of P are symmetric functions of q1^2 and q2^2.

@@ -23,10 +23,10 @@ from .even_functions import (
 from .exponents import (
     EXPONENT_SETTINGS,
     TWO_MACHINE_EPSILONS,
+    P_and_squared_exponents,
     cosh_minus_one_over_z,
     modulus,
     modulus_without_underflow,
-    squared_exponents,
 )
 
 EvenSum = tuple[EvenFunctionValues, complex, float]
@@ -94,7 +94,7 @@ def even_sum_by_squares(
     rounding errors are in units of `TWO_MACHINE_EPSILONS`.
     """
     F, nu, c2, gamma3 = coefficients
-    P, plus, minus = squared_exponents(w, coefficients)
+    P, plus, minus = P_and_squared_exponents(w, coefficients)
     g = nu + F * c2
     T = c2 + gamma3
     X = c2 * gamma3

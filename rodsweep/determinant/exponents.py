@@ -44,7 +44,7 @@ TWO_MACHINE_EPSILONS = 2 * MACHINE_EPSILON
 """Unit of the rounding errors of the terms of D: twice the spacing of double-precision numbers at 1."""
 
 
-class HyperbolicFunctions(NamedTuple):
+class ScaledHyperbolicFunctions(NamedTuple):
     """cosh q, sinh(q)/q and (1/q) d(sinh(q)/q)/dq, three entire functions of q^2, all times exp(-Re q)."""
 
     cosh: complex
@@ -68,7 +68,7 @@ def modulus_without_underflow(w: complex) -> float:
 
 
 @compiled
-def squared_exponents(w: complex, coefficients: Coefficients) -> tuple[complex, complex, complex]:
+def P_and_squared_exponents(w: complex, coefficients: Coefficients) -> tuple[complex, complex, complex]:
     """Returns (P, z+, z-) of a uniform rod at w != 0, in the notation of `rodsweep.determinant.value`. The
     smaller of z+ and z- follows from the product z+ z-, without cancellation."""
     F, nu, c2, gamma3 = coefficients
@@ -89,7 +89,7 @@ def squared_exponents(w: complex, coefficients: Coefficients) -> tuple[complex, 
 
 @compiled
 def cosh_minus_one_over_z(z: complex, root: complex, scale: float) -> tuple[complex, complex]:
-    """E(z) = (cosh sqrt(z) - 1)/z and dE/dz, both times exp(-scale); root: sqrt(z)."""
+    """Returns (E(z), dE/dz), both times exp(-scale), E(z) = (cosh sqrt(z) - 1)/z. root: sqrt(z)."""
     if abs(z) < EXPONENT_SETTINGS.cosh_series_below:
         value = 1 + z / 30 * (1 + z / 56 * (1 + z / 90 * (1 + z / 132 * (1 + z / 182))))
         slope = 1 + 3 * z / 112 * (1 + 4 * z / 270 * (1 + 5 * z / 528 * (1 + 6 * z / 910)))
@@ -103,14 +103,14 @@ def cosh_minus_one_over_z(z: complex, root: complex, scale: float) -> tuple[comp
 
 
 @compiled
-def hyperbolic_functions(v: complex, root: complex) -> HyperbolicFunctions:
+def scaled_hyperbolic_functions(v: complex, root: complex) -> ScaledHyperbolicFunctions:
     """cosh q, sinh(q)/q and (1/q) d(sinh(q)/q)/dq, times exp(-Re q), for q = `root`; v: q^2."""
     if modulus(v) < EXPONENT_SETTINGS.sinh_series_below:
         first = 1 + v / 6 * (1 + v / 20 * (1 + v / 42 * (1 + v / 72 * (1 + v / 110 * (1 + v / 156)))))
         series_sum = 1 + v / 28 * (1 + v / 54 * (1 + v / 88 * (1 + v / 130 * (1 + v / 180))))
         series_sum = (1 + v / 10 * series_sum) / 3
         size = math.exp(-root.real)
-        return HyperbolicFunctions(size * (first + v * series_sum), size * first, size * series_sum)
+        return ScaledHyperbolicFunctions(size * (first + v * series_sum), size * first, size * series_sum)
     # cosh and sinh times exp(-Re q), which cannot overflow.
     squared_decay = math.exp(-2 * root.real)
     even = (1 + squared_decay) / 2
@@ -119,4 +119,4 @@ def hyperbolic_functions(v: complex, root: complex) -> HyperbolicFunctions:
     sine = math.sin(root.imag)
     cosh = complex(even * cosine, half_difference * sine)
     first = complex(half_difference * cosine, even * sine) / root
-    return HyperbolicFunctions(cosh, first, (cosh - first) / v)
+    return ScaledHyperbolicFunctions(cosh, first, (cosh - first) / v)

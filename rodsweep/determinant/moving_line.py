@@ -17,18 +17,18 @@ from typing import ClassVar, NamedTuple
 from ..model.compiled.compilation import compiled
 from ..model.compiled.kernel_constants import KernelConstants
 from ..model.rod import Coefficients
-from .certificate.covering import (
-    distance_from_zero_bound,
-    exponent_changes,
-    is_taylor_remainder_below,
-    mean_exponent_slopes,
-)
-from .certificate.discs import DISC_BOUND_SETTINGS, bidisc_centre
-from .certificate.eigenvalue_box import (
+from .certificate.box_of_all_eigenvalues import (
     BOX_SETTINGS,
     box_from_sqrt_frequency_bound,
     frequency_bound_between_rods,
 )
+from .certificate.covering import (
+    distance_from_zero_bound,
+    exponent_changes,
+    is_taylor_remainder_below,
+    modulus_weighted_exponent_slopes,
+)
+from .certificate.discs import DISC_BOUND_SETTINGS, bidisc_centre
 from .parameter_path import determinant_value_on_path, dispersion_coefficient_derivatives
 
 
@@ -37,17 +37,17 @@ class MovingLineSettings(KernelConstants):
     """Settings for the rectangles that prove that no eigenvalue crosses a moving line."""
 
     first_half_height_over_line_distance: float = 0.35
-    """Half-height (in y) of the first rectangle over the distance of the line from the imaginary axis."""
+    """Half-height (in y) of the first rectangle over the line's largest distance from the axis Re w = 0."""
     half_height_growth_factor: float = 1.6
     """After a proved rectangle, the half-height of the next rectangle is larger by this factor."""
     max_half_height_over_w: float = 0.6
     """Largest half-height of a rectangle divided by |w| at its lower edge. The discs about the centre of the
     rectangle must not contain w = 0."""
-    overlap_enlargement_fraction: float = 1e-7
+    rectangle_enlargement_fraction: float = 1e-7
     """The half-widths of every rectangle are enlarged by this fraction, so that rounding leaves no gap."""
     min_rectangle_fraction: float = 1e-6
     """The proof fails if a rectangle is needed whose width in p is below this fraction of the interval of p,
-    or whose half-height is below this fraction of the distance of the line from the imaginary axis."""
+    or whose half-height is below this fraction of the line's largest distance from the imaginary axis."""
     field_ranges: ClassVar = {
         "half_height_growth_factor": (1.0, math.inf),
         "max_half_height_over_w": (0.0, 1.0),
@@ -58,7 +58,7 @@ class MovingLineSettings(KernelConstants):
 MOVING_LINE_SETTINGS = MovingLineSettings()
 
 
-class IntervalEnd(NamedTuple):
+class RodAndLineAtEnd(NamedTuple):
     """An end of an interval of a path: p, coefficients of the rod at p, and `line`: Re w of the line at p."""
 
     p: float
@@ -67,7 +67,7 @@ class IntervalEnd(NamedTuple):
 
 
 class UnprovedStrip(NamedTuple):
-    """The part above y of the strip over a subinterval of p; D may still have zeros in this part.
+    """The part above y = `y_start` of the strip over a subinterval of p; D may still have zeros in this part.
     start_fraction, stop_fraction: ends of the subinterval, as fractions of the whole interval of p.
     next_rectangle_half_height: half the height of the next rectangle to try, in y."""
 
@@ -79,7 +79,7 @@ class UnprovedStrip(NamedTuple):
 
 
 @compiled
-def interpolate_ends(fraction: float, first: IntervalEnd, last: IntervalEnd) -> IntervalEnd:
+def interpolate_ends(fraction: float, first: RodAndLineAtEnd, last: RodAndLineAtEnd) -> RodAndLineAtEnd:
     """p, coefficients and line interpolated linearly between `first` (fraction = 0) and `last` (fraction =
     1). The interpolation has no cancellation."""
     a = 1 - fraction
@@ -89,12 +89,12 @@ def interpolate_ends(fraction: float, first: IntervalEnd, last: IntervalEnd) -> 
     coefficients = Coefficients(
         a * F + b * F_last, a * nu + b * nu_last, a * c2 + b * c2_last, a * gamma3 + b * gamma3_last
     )
-    return IntervalEnd(a * first.p + b * last.p, coefficients, a * first.line + b * last.line)
+    return RodAndLineAtEnd(a * first.p + b * last.p, coefficients, a * first.line + b * last.line)
 
 
 @compiled
 def rectangle_proof_and_costs(
-    centre_end: IntervalEnd,
+    centre_end: RodAndLineAtEnd,
     y: float,
     direction: Coefficients,
     half_widths: tuple[float, float],
@@ -122,7 +122,7 @@ def rectangle_proof_and_costs(
             centre, (D_w / D, D_p / D), radii, DISC_BOUND_SETTINGS.max_D_change_ratio * abs(D) - rounding, 1
         ):
             return True, 0.0, 0.0
-        mean_rates = mean_exponent_slopes(centre)
+        mean_rates = modulus_weighted_exponent_slopes(centre)
         w_slope = D_w - mean_rates[0] * D
         p_slope = D_p - mean_rates[1] * D
         max_remainder = (
@@ -137,8 +137,8 @@ def rectangle_proof_and_costs(
 
 
 @compiled
-def proves_no_crossing(
-    first: IntervalEnd, last: IntervalEnd, direction: Coefficients, max_count: int
+def no_crossing_proof_and_count(
+    first: RodAndLineAtEnd, last: RodAndLineAtEnd, direction: Coefficients, max_count: int
 ) -> tuple[bool, int]:
     """Returns (proved, number of rectangles examined). proved: whether it is proved that no eigenvalue
     crosses the moving line.
@@ -157,7 +157,7 @@ def proves_no_crossing(
     top = box_from_sqrt_frequency_bound(a, depth)[1]
     width = last.p - first.p
     slope = (last.line - first.line) / width
-    enlargement = 1 + MOVING_LINE_SETTINGS.overlap_enlargement_fraction
+    enlargement = 1 + MOVING_LINE_SETTINGS.rectangle_enlargement_fraction
     min_fraction = MOVING_LINE_SETTINGS.min_rectangle_fraction
     count = 0
     stack = [UnprovedStrip(0.0, 1.0, 0.0, MOVING_LINE_SETTINGS.first_half_height_over_line_distance * depth)]

@@ -20,19 +20,19 @@ class DispersionCoefficientDerivatives(NamedTuple):
     coefficients of D(w). T is linear in p."""
 
     T_p: float
-    """dT/dp."""
+    """dT/dp, T = c2 + gamma3."""
     N_p: float
-    """dN/dp."""
+    """dN/dp, N = F g."""
     N_pp: float
-    """d^2N/dp^2."""
+    """d^2N/dp^2, N = F g."""
     G_p: float
-    """dG/dp."""
+    """dG/dp, G = g nu."""
     G_pp: float
-    """d^2G/dp^2."""
+    """d^2G/dp^2, G = g nu."""
     X_p: float
-    """dX/dp."""
+    """dX/dp, X = c2 gamma3."""
     X_pp: float
-    """d^2X/dp^2."""
+    """d^2X/dp^2, X = c2 gamma3."""
 
 
 class PathDeterminantValue(NamedTuple):
@@ -48,15 +48,15 @@ class PathDeterminantValue(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ParameterPath:
-    """All rods that differ from `rod` only in the parameter `name`."""
+    """All rods that differ from `rod` only in the parameter `parameter_name`."""
 
     rod: Rod
-    name: str
+    parameter_name: str
 
     @property
     def parameter(self) -> Parameter:
         """The entry of the varying parameter in the table of parameters."""
-        return PARAMETERS[self.name]
+        return PARAMETERS[self.parameter_name]
 
     @property
     def is_compliance_path(self) -> bool:
@@ -66,15 +66,15 @@ class ParameterPath:
     @property
     def direction(self) -> Coefficients:
         """d(F, nu, c2, gamma3)/dp, the same for all rods of the path."""
-        return self.rod.coefficient_derivative(self.name)
+        return self.rod.coefficient_derivative(self.parameter_name)
 
     @property
     def origin(self) -> Coefficients:
         """The coefficients (F, nu, c2, gamma3) extrapolated to p = 0, where the rod may be invalid."""
-        return coefficients_of({**self.rod.values, self.name: self.parameter.value(0.0)})
+        return coefficients_of({**self.rod.values, self.parameter_name: self.parameter.value(0.0)})
 
     def coordinate(self, value: float) -> float:
-        """The path variable p at which the varying parameter has `value_and_error`."""
+        """The path variable p at which the varying parameter has the value `value`."""
         return self.parameter.coordinate(value)
 
     def value_and_error(self, p: float, p_error: float) -> tuple[float, float]:
@@ -84,11 +84,11 @@ class ParameterPath:
 
     def rod_at(self, p: float) -> Rod:
         """The rod at p. Raises ValueError if the rod is invalid, for example crushed."""
-        return self.rod.with_coordinate(self.name, p)
+        return self.rod.with_coordinate(self.parameter_name, p)
 
     def text_at(self, p: float) -> str:
         """Text with the value of the varying parameter at p, such as "F = 30"."""
-        return f"{self.name} = {self.parameter.value(p):.9g}"
+        return f"{self.parameter_name} = {self.parameter.value(p):.9g}"
 
 
 @compiled
@@ -129,7 +129,7 @@ def squared_exponent_slopes_by_p(
     exponents: ExponentDerivatives,
     dispersion_coefficient_derivatives: DispersionCoefficientDerivatives,
 ) -> tuple[complex, complex]:
-    """(dz+/dp, dz-/dp) at w. exponents: of `exponent_derivatives` at w."""
+    """(dz+/dp, dz-/dp) at w. exponents: result of `exponent_derivatives` at w."""
     P_p = 0j
     if exponents.P != 0:
         P_p = (
@@ -147,8 +147,8 @@ def squared_exponent_slopes_by_p(
 def determinant_value_on_path(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> PathDeterminantValue:
-    """D, dD/dw and dD/dp of a uniform rod on a path, times exp(-S), at w != 0. direction:
-    d(F, nu, c2, gamma3)/dp."""
+    """D, dD/dw and dD/dp of a uniform rod on a path, at w != 0, times exp(-S), S = `log_scale` of the result.
+    direction: d(F, nu, c2, gamma3)/dp."""
     F, nu, c2, gamma3 = coefficients
     parts = even_sum(w, coefficients)
     D, D_w, S, rounding_error = determinant_from_even_sum(w, coefficients, parts)
@@ -159,7 +159,7 @@ def determinant_value_on_path(
     M_p = T_p * w - N_p
     square_p = w * (G_p + X_p * w)
     p_derivative = T_p * even.s + 4 * (G_p + 2 * X_p * w) * even.d
-    p_derivative += M_p * (T * even.s_M + 4 * N * even.d_M) + 4 * square_p * (
-        T * even.d_M + 4 * N * even.d_P_squared_over_4
+    p_derivative += M_p * (T * even.ds_dM + 4 * N * even.dd_dM) + 4 * square_p * (
+        T * even.dd_dM + 4 * N * even.quarter_of_dd_dP_squared
     )
     return PathDeterminantValue(D, D_w, w / 2 * p_derivative, S, rounding_error)

@@ -18,7 +18,8 @@ class PlaneDifferenceSettings:
     """Settings for derivatives of D by differences along the scaled axes of a plane."""
 
     axis_end_tolerance: float = 1e-12
-    """A coordinate beyond an end of a scaled axis by less than this is moved to the end: it is rounding."""
+    """A coordinate beyond an end of a scaled axis by less than this, a rounding error, is moved to the
+    end."""
     max_difference_step: float = 1e-3
     """Largest step of differences along a scaled axis, which has length 1."""
     max_step_over_crushing_distance: float = 0.01
@@ -36,15 +37,17 @@ FOURTH_ORDER_ONE_SIDED_STENCIL = ((0, -25 / 12), (1, 4.0), (2, -3.0), (3, 4 / 3)
 
 @dataclass(frozen=True, slots=True)
 class PlaneAxis:
-    """One axis of a plane: the parameter `name` from `start` to `stop`, finite, linear or logarithmic."""
+    """One axis of a plane: the parameter `parameter_name` from `start` to `stop`, finite, linear or
+    logarithmic."""
 
-    name: str
+    parameter_name: str
     start: float
     stop: float
     is_logarithmic: bool = False
 
     def value(self, x: float) -> float:
-        """The parameter at the scaled coordinate x: 0 at `start`, 1 at `stop`; clipped just beyond an end."""
+        """The parameter at the scaled coordinate x, which is 0 at `start` and 1 at `stop`; an x just beyond
+        an end is moved to the end."""
         settings = PLANE_DIFFERENCE_SETTINGS
         if -settings.axis_end_tolerance < x < 0 or 1 < x < 1 + settings.axis_end_tolerance:
             x = round(x)
@@ -65,7 +68,11 @@ class PlaneAxis:
     def path_variable_per_scaled_coordinate(self, value: float) -> float:
         """dp/dx where the parameter has `value`, p: 1/k for a stiffness k, else the parameter."""
         parameter_rate = self.parameter_per_scaled_coordinate(value)
-        return -parameter_rate / value**2 if PARAMETERS[self.name].has_inverse_coordinate else parameter_rate
+        return (
+            -parameter_rate / value**2
+            if PARAMETERS[self.parameter_name].has_inverse_coordinate
+            else parameter_rate
+        )
 
 
 class PlaneDeterminantValue(NamedTuple):
@@ -93,18 +100,22 @@ class ParameterPlane:
     @cached_property
     def are_rods_uniform_and_linear(self) -> bool:
         """Whether all rods of the plane are uniform and of linear material, so that D has a closed form."""
-        return self.rod.is_uniform_and_linear and all(axis.name != "taper" for axis in self.axes)
+        return self.rod.is_uniform_and_linear and all(axis.parameter_name != "taper" for axis in self.axes)
 
     def rod_at(self, x: float, y: float) -> Rod:
-        """The rod at scaled coordinates (x, y). Raises ValueError if it is invalid, as crushed."""
-        return self.rod.with_values(**{a.name: a.value(z) for a, z in zip(self.axes, (x, y), strict=True)})
+        """The rod at scaled coordinates (x, y); ValueError for an invalid rod, for example a crushed rod."""
+        return self.rod.with_values(
+            **{a.parameter_name: a.value(z) for a, z in zip(self.axes, (x, y), strict=True)}
+        )
 
     def determinant(self, w: complex, x: float, y: float) -> PlaneDeterminantValue:
         """D and the derivatives of D by w, x and y, at w, for the rod at scaled coordinates (x, y)."""
         rod = self.rod_at(x, y)
         if self.are_rods_uniform_and_linear:
-            (D, D_w, _, log_scale, rounding_error), D_x = self._determinant_along_axis(w, rod, self.axes[0])
-            _, D_y = self._determinant_along_axis(w, rod, self.axes[1])
+            (D, D_w, _, log_scale, rounding_error), D_x = self._determinant_and_coordinate_slope(
+                w, rod, self.axes[0]
+            )
+            _, D_y = self._determinant_and_coordinate_slope(w, rod, self.axes[1])
         else:
             D, D_w, log_scale, rounding_error = self.determinant_value(w, x, y)
             D_x, D_y = self._slopes_of_arms(w, x, y, log_scale)
@@ -150,13 +161,15 @@ class ParameterPlane:
         return slopes
 
     @staticmethod
-    def _determinant_along_axis(
+    def _determinant_and_coordinate_slope(
         w: complex, rod: Rod, axis: PlaneAxis
     ) -> tuple[PathDeterminantValue, complex]:
-        """Returns (D with derivatives by w and the parameter of `axis`, derivative by its scaled
-        coordinate)."""
-        value = determinant_value_on_path(w, rod.coefficients, rod.coefficient_derivative(axis.name))
-        return value, value.D_p * axis.path_variable_per_scaled_coordinate(getattr(rod, axis.name))
+        """Returns (D with derivatives by w and the path variable of `axis`, derivative of D by the scaled
+        coordinate of `axis`)."""
+        value = determinant_value_on_path(
+            w, rod.coefficients, rod.coefficient_derivative(axis.parameter_name)
+        )
+        return value, value.D_p * axis.path_variable_per_scaled_coordinate(getattr(rod, axis.parameter_name))
 
     def difference_step_at(self, x: float, y: float, axis_index: int, max_step: float) -> float:
         """A difference step along axis number `axis_index` at (x, y): the smaller of `max_step` and the
@@ -165,11 +178,11 @@ class ParameterPlane:
         rod = self.rod_at(x, y)
         axis = self.axes[axis_index]
         force = rod.crushing_force
-        if force == inf or axis.name not in (*FORCE_AND_STRETCH_STIFFNESS, "taper"):
+        if force == inf or axis.parameter_name not in (*FORCE_AND_STRETCH_STIFFNESS, "taper"):
             return max_step
         # The crushing force is proportional to k1 and quadratic in the taper, like the area.
-        rate = {"F": 1.0, "k1": force / rod.k1}.get(axis.name, 2 * force / rod.taper)
-        slope = rate * axis.parameter_per_scaled_coordinate(getattr(rod, axis.name))
+        rate = {"F": 1.0, "k1": force / rod.k1}.get(axis.parameter_name, 2 * force / rod.taper)
+        slope = rate * axis.parameter_per_scaled_coordinate(getattr(rod, axis.parameter_name))
         return min(
             max_step, PLANE_DIFFERENCE_SETTINGS.max_step_over_crushing_distance * (force - rod.F) / slope
         )
@@ -185,5 +198,7 @@ class ParameterPlane:
     def is_uncrushed_at(self, x: float, y: float) -> bool:
         """Whether the force at scaled coordinates (x, y) is below the force that crushes the rod."""
         # A crushed rod cannot be made, so its force is compared without making it.
-        values = {**self.rod.values} | {a.name: a.value(v) for a, v in zip(self.axes, (x, y), strict=True)}
-        return values["F"] < values["k1"] * self.rod.material.relative_crushing_force(values["taper"])
+        values = {**self.rod.values} | {
+            a.parameter_name: a.value(v) for a, v in zip(self.axes, (x, y), strict=True)
+        }
+        return values["F"] < values["k1"] * self.rod.material.crushing_force_over_k1(values["taper"])

@@ -19,16 +19,16 @@ from .even_sum import even_sum
 from .exponents import (
     EXPONENT_SETTINGS,
     TWO_MACHINE_EPSILONS,
+    P_and_squared_exponents,
     cosh_minus_one_over_z,
-    hyperbolic_functions,
     modulus,
     modulus_without_underflow,
-    squared_exponents,
+    scaled_hyperbolic_functions,
 )
 
 
 class _DispersionTerms(NamedTuple):
-    """T, N, M and P^2 (`P_squared`) of a rod at w, and rounding errors of M, of P^2 and of N."""
+    """T, N (`P_squared_w`), M and P^2 (`P_squared`) of a rod at w; rounding errors of M, of P^2 and of N."""
 
     T: float
     P_squared_w: complex
@@ -92,7 +92,7 @@ def rounding_error_at_root(w: complex, coefficients: Coefficients, log_scale: fl
             contrast * size * size + drag * size + (F * soft) ** 2,
             2 * contrast * size + drag,
         )
-        error, S = _error_and_log_scale_by_squares(squared_exponents(w, coefficients), terms, product)
+        error, S = _error_and_log_scale_by_squares(P_and_squared_exponents(w, coefficients), terms, product)
     return TWO_MACHINE_EPSILONS * (math.exp(-log_scale) + size / 2 * error * math.exp(S - log_scale))
 
 
@@ -111,8 +111,8 @@ def _error_and_log_scale_by_roots(terms: _DispersionTerms) -> tuple[float, float
     q1 = cmath.sqrt(u)
     q2 = cmath.sqrt(v)
     S = q1.real + q2.real
-    cosh1, first1, second1 = hyperbolic_functions(u, q1)
-    cosh2, first2, second2 = hyperbolic_functions(v, q2)
+    cosh1, first1, second1 = scaled_hyperbolic_functions(u, q1)
+    cosh2, first2, second2 = scaled_hyperbolic_functions(v, q2)
     C = cosh1 * cosh2 - math.exp(-S)
     H = first1 * first2
     per_R = 1 / R

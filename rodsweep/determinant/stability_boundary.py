@@ -42,7 +42,7 @@ BOUNDARY_POINT_SETTINGS = BoundaryPointSettings()
 
 class BoundarySolution(NamedTuple):
     """A point v = (x, y, h) on a stability boundary, h = log |w|; Jacobian of the equations at v, (2, 3);
-    error of v."""
+    error: largest error of a coordinate of v."""
 
     v: Array
     jacobian: Array
@@ -64,7 +64,7 @@ class StabilityBoundary:
     plane: ParameterPlane
     double_eigenvalue_sign: float
 
-    def eigenvalue(self, h: float) -> tuple[float, float]:
+    def growth_rate_and_frequency(self, h: float) -> tuple[float, float]:
         """(growth rate, frequency), in 1/tau2, of the eigenvalue at a point whose third coordinate is h."""
         size = math.exp(h)
         return (self.double_eigenvalue_sign * size, 0.0) if self.double_eigenvalue_sign else (0.0, size)

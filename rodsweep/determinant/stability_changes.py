@@ -46,12 +46,12 @@ class StabilityChange(NamedTuple):
     frequency: float
 
 
-CoefficientsAlongForce = tuple[Coefficients, Coefficients]
+CoefficientsLinearInForce = tuple[Coefficients, Coefficients]
 """Rods that differ in F only: (coefficients at F = 0, derivative of the coefficients by F)."""
 
 
 def oscillation_onset_between(
-    rods: CoefficientsAlongForce, end_forces: tuple[float, float], before_w: Complex, after_w: Complex
+    rods: CoefficientsLinearInForce, end_forces: tuple[float, float], before_w: Complex, after_w: Complex
 ) -> StabilityChange | None:
     """The double real eigenvalue between the two forces `end_forces`; None if Newton's method does not find
     it.
@@ -76,7 +76,7 @@ def oscillation_onset_between(
 
 
 def stability_change_between(
-    rods: CoefficientsAlongForce,
+    rods: CoefficientsLinearInForce,
     end_forces: tuple[float, float],
     before_w: Complex,
     after_w: Complex,

@@ -27,7 +27,7 @@ from ..model.compiled.compilation import compiled
 from ..model.compiled.kernel_constants import KernelConstants
 from ..model.rod import Coefficients
 from .even_sum import EvenSum, even_sum
-from .exponents import EXPONENT_SETTINGS, squared_exponents
+from .exponents import EXPONENT_SETTINGS, P_and_squared_exponents
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,7 +38,8 @@ class DeterminantSettings(KernelConstants):
     """The rounding error of D is estimated by this fraction of its bound `rounding_error`. Measured fractions
     have the median 0.05, the upper quartile 0.1 and the maximum 0.7."""
     replacement_of_zero_w: float = 1e-200
-    """D(0) is computed at this w, in 1/tau2, so that no formula divides by 0; |D - 1| is rounding there."""
+    """D(0) is computed at this w, in 1/tau2, so that no formula divides by 0; |D - 1| is then a rounding
+    error."""
     second_derivative_step_over_w: float = 1e-4
     """Step of the central difference of D' for D'', divided by |w|. The relative error of D'' is about the
     square of this number: enough to distinguish a double root from two close roots."""
@@ -71,7 +72,7 @@ class ExponentDerivatives(NamedTuple):
 def exponent_derivatives(w: complex, coefficients: Coefficients) -> ExponentDerivatives:
     """P with its first two derivatives by w, z+ and z- of a uniform rod at w != 0."""
     F, nu, c2, gamma3 = coefficients
-    P, plus, minus = squared_exponents(w, coefficients)
+    P, plus, minus = P_and_squared_exponents(w, coefficients)
     P1 = 0j
     P2 = 0j
     if P != 0:  # P is zero for every w if g = gamma3 = 0; then z+ = z- has no branch point
@@ -82,7 +83,7 @@ def exponent_derivatives(w: complex, coefficients: Coefficients) -> ExponentDeri
 
 @compiled
 def scaled_determinant(w: complex, coefficients: Coefficients) -> DeterminantValue:
-    """D and dD/dw of a uniform rod at w, times exp(-S). w = 0 is replaced by
+    """D and dD/dw of a uniform rod at w, times exp(-S), S = `log_scale` of the result. w = 0 is replaced by
     `DETERMINANT_SETTINGS.replacement_of_zero_w`, where D equals D(0) = 1 within rounding."""
     if w == 0:
         w = complex(DETERMINANT_SETTINGS.replacement_of_zero_w, 0.0)
@@ -91,14 +92,18 @@ def scaled_determinant(w: complex, coefficients: Coefficients) -> DeterminantVal
 
 @compiled
 def determinant_from_even_sum(w: complex, coefficients: Coefficients, parts: EvenSum) -> DeterminantValue:
-    """D and dD/dw times exp(-S) at w. parts: result of `even_sum` at w."""
+    """D and dD/dw at w, times exp(-S), S = `log_scale` of the result. parts: result of `even_sum` at w."""
     even, even_sum, rounding_error = parts
     F, nu, c2, gamma3 = coefficients
     T = c2 + gamma3
     X = c2 * gamma3
     # d(P^2)/dw.
     N = (nu + F * c2) * nu + 2 * X * w
-    slope = T * (T * even.s_M + 8 * N * even.d_M) + 8 * X * even.d + 16 * N * N * even.d_P_squared_over_4
+    slope = (
+        T * (T * even.ds_dM + 8 * N * even.dd_dM)
+        + 8 * X * even.d
+        + 16 * N * N * even.quarter_of_dd_dP_squared
+    )
     return DeterminantValue(
         math.exp(-even.log_scale) + w / 2 * even_sum,
         (even_sum + w * slope) / 2,
@@ -111,7 +116,8 @@ def determinant_from_even_sum(w: complex, coefficients: Coefficients, parts: Eve
 def scaled_second_derivative_between(
     value_after: DeterminantValue, value_before: DeterminantValue, S: float, h: float
 ) -> complex:
-    """D'' exp(-S) by a central difference of D' between w + h (`value_after`) and w - h (`value_before`)."""
+    """D'' exp(-S) by a central difference of D' between w + h (`value_after`) and w - h (`value_before`). S:
+    logarithm of the scale of the result."""
     # Each value has its own scale exp(-S); the difference needs one common scale.
     return (
         value_after.D_w * math.exp(value_after.log_scale - S)
@@ -142,7 +148,7 @@ def distance_to_next_root(w: complex, coefficients: Coefficients) -> float:
 
 
 @compiled
-def eigenvalue_error_and_scales(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
+def root_error_w_scale_and_wave_number(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
     """Returns (error, length, wave number) of a uniform rod at w.
 
     error: |D/D'|, in 1/tau2, the distance from w to an eigenvalue to first order, however w was computed. If

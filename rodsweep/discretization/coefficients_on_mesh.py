@@ -25,9 +25,9 @@ from .nodal_rod import NO_JUMP_DERIVATIVE, NO_JUMPS, IntegerArray, Jumps
 
 
 def balance_coefficients_at_nodes(rod: Rod, mesh: Mesh) -> BalanceCoefficients:
-    """Coefficients of the balance of a rod at the nodes of a mesh; compliance, drag and rest_strain are
-    constants, (3,), for a uniform rod of linear material, and (3, nodes + 1) for any other arm. Elements of
-    the mesh must end at the breaks of the arm's profile."""
+    """Coefficients of the balance of a rod at the nodes of a mesh; compliance, drag and straight_state_strain
+    are constants, (3,), for a uniform rod of linear material, and (3, nodes + 1) for any other arm. Elements
+    of the mesh must end at the breaks of the arm's profile."""
     if rod.is_uniform_and_linear:
         return rod.balance_coefficients
     compliance, drag, rest_strain = _mean_coefficients_at_nodes(_sections_inside_elements(rod, mesh), mesh)
@@ -49,7 +49,7 @@ def balance_coefficient_derivatives_at_nodes(
 
 def relative_bending_compliance_at_nodes(material: RodMaterial, mesh: Mesh) -> Array:
     """Bending compliance c3(u)/c3(0) at all nodes, (nodes + 1,), of an arm without taper and of the material
-    `material`. At a jump the value is the mean of both sides, so that times m3 it is the mean bending
+    `material`. At a jump the value is the mean of both sides; its product with m3 is the mean bending
     strain."""
     if material.profile is None:
         return np.ones(mesh.node_count + 1)
@@ -59,7 +59,7 @@ def relative_bending_compliance_at_nodes(material: RodMaterial, mesh: Mesh) -> A
 def jumps_on_mesh(rod: Rod, mesh: Mesh) -> Jumps:
     """The nodes of a mesh at which the material of a rod jumps, and the material on both sides of each
     jump."""
-    indices, nodes = _indices_beside_jumps(rod.material, mesh)
+    indices, nodes = _jump_side_indices_and_nodes(rod.material, mesh)
     if not len(nodes):
         return NO_JUMPS
     sections = _sections_inside_elements(rod, mesh)
@@ -77,7 +77,7 @@ def _side_weights_at_jumps(material: RodMaterial, taper: float, mesh: Mesh) -> A
     """Columns for both sides of every jump of an arm, (k, 2, 7), with the weights of both sides in the means,
     and 0 in the columns of the coefficients. Cached, because the weights are independent of all parameters
     except the taper."""
-    indices, _ = _indices_beside_jumps(material, mesh)
+    indices, _ = _jump_side_indices_and_nodes(material, mesh)
     points = mesh.one_sided_nodes[indices]
     weights = _one_sided_node_points(mesh).quadrature_weights[indices]
     relative_compliances = material.relative_compliances(taper, points.ravel()).reshape(3, *points.shape)
@@ -97,7 +97,7 @@ def jump_derivatives(rod: Rod, parameter_name: str, mesh: Mesh) -> Array:
     """Derivatives of nu, c1 and c3 on both sides of each jump with respect to the coordinate of the parameter
     `parameter_name`, (k, 2, 3). Returns `NO_JUMP_DERIVATIVE` for a rod without jumps and for a linear law,
     for which the stress at a jump depends only on the mean strain."""
-    indices, nodes = _indices_beside_jumps(rod.material, mesh)
+    indices, nodes = _jump_side_indices_and_nodes(rod.material, mesh)
     if rod.material.constitutive_law is LINEAR_CONSTITUTIVE_LAW or not len(nodes):
         return NO_JUMP_DERIVATIVE
     derivatives = rod.cross_section_derivatives(parameter_name, mesh.one_sided_nodes[indices].ravel())
@@ -107,13 +107,13 @@ def jump_derivatives(rod: Rod, parameter_name: str, mesh: Mesh) -> Array:
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _sections_inside_elements(rod: Rod, mesh: Mesh) -> CrossSections:
-    """Properties of the cross-sections of a rod at the `one_sided_nodes` of a mesh. Cached for the
-    material, its jumps and its derivatives."""
+    """Properties of the cross-sections of a rod at the `one_sided_nodes` of a mesh. Cached, because the
+    coefficients at the nodes, the jumps and the derivatives all need them."""
     return rod.cross_sections_at(mesh.one_sided_nodes)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _indices_beside_jumps(material: RodMaterial, mesh: Mesh) -> tuple[IntegerArray, IntegerArray]:
+def _jump_side_indices_and_nodes(material: RodMaterial, mesh: Mesh) -> tuple[IntegerArray, IntegerArray]:
     """Returns (indices, nodes) of the k jumps, cached. indices: indices, in `Elements.one_sided_nodes`, of
     the points just left and just right of each jump, (k, 2). nodes: index of the node at each jump, (k,)."""
     jumps = material.jump_positions

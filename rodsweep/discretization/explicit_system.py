@@ -92,14 +92,15 @@ class ExplicitSystem(RodOnMesh):
         return jacobians.swapaxes(-1, -2)
 
     def tip_position_and_velocity(self, z: Array, direction: Array) -> tuple[Array, Array]:
-        """Returns (position, velocity) of the tip, (3, ...) each: (x, y, theta) at z, and its time derivative
-        for dz/dt = direction. z, direction: (..., unknowns). The velocity is a complex-step derivative."""
+        """Returns (position, velocity) of the tip, (3, ...) each: (x, y, theta) at z, in L and rad, and the
+        derivative of (x, y, theta) by the time in tau2, for dz/dt = direction. z, direction: (..., unknowns).
+        The velocity is a complex-step derivative."""
         shape = self._shape_and_velocities(z, direction)[..., -1]
         return shape.real, shape.imag / TIP_VELOCITY_SETTINGS.imaginary_step
 
-    def transverse_velocities(self, z: Array, direction: Array) -> Array:
-        """Time derivative of y at z for dz/dt = direction, at all nodes, (..., nodes + 1); z, direction:
-        (..., unknowns)."""
+    def y_velocities(self, z: Array, direction: Array) -> Array:
+        """Time derivative of y, in L/tau2, at z for dz/dt = direction, at all nodes, (..., nodes + 1); z,
+        direction: (..., unknowns)."""
         velocities: Array = (
             self._shape_and_velocities(z, direction)[1].imag / TIP_VELOCITY_SETTINGS.imaginary_step
         )

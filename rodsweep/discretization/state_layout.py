@@ -23,7 +23,7 @@ BENDING_INDEX: index of the component m3. Both constants are for compiled code."
 @dataclass(frozen=True, slots=True)
 class StateLayout:
     """Order of the unknowns in states of the shape (..., unknowns). component_count: number of stress
-    components. node_count: number of nodes without the tip. unknown_velocities: indices of the
+    components. node_count: number of nodes without the tip. unknown_velocity_components: indices of the
     components of V that are unknowns. Velocities at the tip are unknowns, stresses at the tip are 0."""
 
     component_count: int

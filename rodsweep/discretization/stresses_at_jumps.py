@@ -27,16 +27,17 @@ STRETCHING_STRESS_INDEX = 0
 BENDING_STRESS_INDEX = 2
 """Indices of the stretching stress S1 and of the bending stress S3, the components of S that jump."""
 DISCONTINUOUS_STRESS_COMPONENTS = STRETCHING_STRESS_INDEX, BENDING_STRESS_INDEX
-"""The components of S that are discontinuous at a jump."""
+"""Indices of the components of S that are discontinuous at a jump."""
 SIDE_WEIGHT_COLUMNS = 3, 4
-"""Columns in JUMP_SIDE_COLUMNS of the weights of a side in the means of DISCONTINUOUS_STRESS_COMPONENTS over
-both sides."""
+"""Indices in JUMP_SIDE_COLUMNS of the weights of a side in the means of S1 and of S3 over both sides."""
 
 
 @compiled
 def write_law_unknowns_beside_jump(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
-    """Writes q1 and q3 before a jump, then q1 and q3 behind the jump, into out, (4, m). law: number of the
-    constitutive law. q1, q3: means over both sides, (m,). sides: the material on both sides, (2, 7)."""
+    """Writes the unknowns q1 and q3 of a law (see `LawUnknowns`) on both sides of a jump into out, (4, m):
+    q1, q3 before the jump, then q1, q3 behind the jump. law: number of the constitutive law. sides: the
+    material on both sides, (2, 7), with the columns JUMP_SIDE_COLUMNS. q1, q3: means over both sides,
+    (m,)."""
     for i in range(len(q1)):
         q = LawUnknowns(q1[i], q3[i])
         a = unknowns_before_jump(law, sides, q)
@@ -109,9 +110,9 @@ def interpolate_state_stress(nodal: NodalRod, S: Values, source: Mesh, rod: Rod,
     """S at all nodes of the mesh `target`, (3, ..., target nodes + 1), from the S of states at all nodes of
     `source`, (3, ..., nodes + 1). nodal: the rod `rod`, whose law is not linear, at the nodes of `source`.
 
-    In the elements at a jump the polynomial has the value of its own side, computed from the mean of both
-    sides. `interpolate_stress` extrapolates this value, which is less accurate by an order of magnitude, but
-    linear.
+    In the two elements at a jump, the value of the polynomial at the jump is the stress on the side of the
+    element, computed from the mean of both sides. `interpolate_stress` extrapolates this value instead, which
+    is less accurate by an order of magnitude, but linear.
     """
     E = interpolation_matrix(source, target)
     target_S = S @ E.T
@@ -181,9 +182,10 @@ def _element_starting_at(mesh: Mesh, node: int) -> int:
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _extrapolation_weights(order: int, jump_at_start: bool, jump_at_end: bool, to_start: bool) -> Array:
-    """Weights, (p + 1,), that extrapolate from the nodes of an element of order p to one end, without nodes
-    at jumps. jump_at_start: whether a jump lies at the first node. jump_at_end: whether a jump lies at the
-    last node. to_start: whether to extrapolate to the first node; otherwise to the last node."""
+    """Weights, (p + 1,), of the nodes of an element of the order p = `order` in the extrapolation to one end;
+    nodes at jumps have the weight 0. jump_at_start: whether a jump lies at the first node. jump_at_end:
+    whether a jump lies at the last node. to_start: whether to extrapolate to the first node; otherwise to the
+    last node."""
     x = gauss_lobatto_rule(order)[0]
     # A value at a jump is a mean over both sides, not a value of the polynomial.
     used_nodes = slice(int(jump_at_start), order + 1 - int(jump_at_end))

@@ -12,21 +12,21 @@ from ..api.dataset import view_of_dataset
 from ..arrays import Array
 from ..model.parameters import PARAMETERS
 from ..post.branch_curves import RodBranches
-from ..post.figures.cycle.animation import MIN_SHAPES
+from ..post.figures.cycle.animation import MIN_SHAPES_PER_PERIOD
 from ..results.file.view import status_sentences_in
 from .page_state import PageState
 from .slider_scales import SLIDER_SCALES
-from .solving.diagram_curves_and_counts import DatasetOrArray, flag_words
+from .solving.diagram_curves_and_unstable_counts import DatasetOrArray, flag_words
 from .solving.requests import AnswerVariables, branch_answer_of_rod
 
 CONTROL_DIGITS = (5, 6)
-"""Numbers of significant digits to which controls round values. A value in a control that equals the rounded
-stored value matches the stored value."""
+"""Numbers of significant digits to which controls round values. A control matches a stored value if the
+control shows the stored value rounded to one of these numbers of digits."""
 EQUALITY_TOLERANCE = 1e-12
 """Values that differ by at most this relative difference are equal; conversion of units causes rounding
 errors."""
 POINT_DIMENSION = "number_of_point"
-"""Name of the dimension of selected points of the file."""
+"""Name of the dimension of the selected points in the result of `_data_at`."""
 CLICK_TOLERANCE_IN_SPACINGS = 0.25
 """A click selects the nearest stored load if the distance between click and load, divided by the smallest
 spacing of stored loads, is below this number."""
@@ -61,15 +61,18 @@ class AnswersFromFile:
         return None
 
     def cycle_for_film(self, state: PageState) -> DatasetOrArray | None:
-        """Stored cycle of the rod of `state`, with axes of length 1; None if no such cycle is stored, or too
-        few shapes for a film."""
+        """Data of the stored cycle of the rod of `state`, in which every dimension of the sweep has the
+        length 1. None if no stable cycle of this rod is stored, or if the cycle has too few shapes for a
+        film."""
         numbers = self._matching_points(state)
         is_other = state.tab != self.state.tab or state.law != self.state.law
         if is_other or not self.has_cycles or len(numbers) == 0 or "shape_x" not in self.data:
             return None
         position = np.unravel_index(numbers[0], self.data["status"].shape) if self.dims else ()
         point = self.data.isel({name: [int(i)] for name, i in zip(self.dims, position, strict=True)})
-        is_filmed = flag_words(point["status"]).item() == "cycle" and point.sizes["shape"] >= MIN_SHAPES
+        is_filmed = (
+            flag_words(point["status"]).item() == "cycle" and point.sizes["shape"] >= MIN_SHAPES_PER_PERIOD
+        )
         return point if is_filmed else None
 
     def load_selected_by_click(self, state: PageState, load: float) -> float:
@@ -126,9 +129,9 @@ class AnswersFromFile:
         )
 
     def _cycle(self, state: PageState) -> AnswerVariables | None:
-        """Stored cycle of the rod of `state`, or the straight rod if the file says that this rod has no
-        cycle. None if the file lacks the point or the shapes, and for a rod without cycle that is not uniform
-        and linear."""
+        """Stored cycle of the rod of `state`. For a rod that has no cycle according to the file: the straight
+        rod if it is uniform and linear, otherwise None. None also if the point or the shapes are missing in
+        the file."""
         numbers = self._matching_points(state)
         if len(numbers) == 0 or "shape_x" not in self.data:
             return None

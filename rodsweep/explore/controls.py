@@ -9,7 +9,7 @@ from bokeh.document import Document
 from bokeh.models import Column, InlineStyleSheet, Select, Slider, TabPanel, Tabs, TextInput
 from bokeh.models.css import StyleSheet
 
-from ..post.summary.arm.arm_texts import quantity_words
+from ..post.summary.arm.arm_texts import printed_quantity_name
 from .page_state import LAW_MENU_ENTRIES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
 from .slider_scales import SLIDER_SCALES, PictureAxis, SliderScale
 
@@ -70,8 +70,8 @@ class SliderField:
 class Controls:
     """All controls of the page.
 
-    changed: callback; its keywords are the changed fields of `PageState`, or `visible_texts`, the changed
-    texts of the tab by name.
+    changed: callback; its keywords are the changed fields of `PageState`, or `values`, the changed texts of
+    the tab by name.
     """
 
     def __init__(self, changed: ChangeCallback, style_sheet: InlineStyleSheet):
@@ -116,15 +116,17 @@ class Controls:
             for name, field in self.fields[state.tab].items():
                 field.show(state.visible_texts[name])
             self.law.value = state.law
-            self.across.options = [(name, quantity_words(name)) for name in SECOND_PARAMETERS[state.tab]]
+            self.across.options = [
+                (name, printed_quantity_name(name)) for name in SECOND_PARAMETERS[state.tab]
+            ]
             self.across.value = state.second_parameter
             self.F_max.value = state.F_max
         finally:
             self._is_updating = False
 
     def show_largest_pressure(self, state: PageState, axis: PictureAxis) -> None:
-        """Writes, for an arm, the pressure that corresponds to the largest force above the field of this
-        force."""
+        """Sets the title of the field of the largest force; for an arm, the title states the corresponding
+        pressure. axis: axis of the load."""
         pressure_clause = (
             f": {state.largest_force() * axis.factor_from_dimensionless:.4g} kPa"
             if state.tab == "arm"
@@ -155,7 +157,7 @@ class PauseTimer:
         self._scheduled: Callable[[], None] | None = None
 
     def restart(self) -> None:
-        """Starts the waiting time, again if it has not ended."""
+        """Starts the waiting time; a waiting time that is running starts again from its beginning."""
         self.cancel()
         self._scheduled = self.document.add_timeout_callback(self._run, PAUSE_MILLISECONDS)
 

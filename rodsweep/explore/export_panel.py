@@ -40,8 +40,8 @@ FILM_COMMANDS_COMMENT = """# the film of the arm:
 
 
 class ExportedLines(DataModel):
-    """Config and Python lines that the buttons copy and save. These texts are updated at every change of the
-    controls, because they are not part of the page's layout."""
+    """Config and Python lines that the buttons copy and save. These texts are not part of the page's layout,
+    so they are updated at every change of the controls."""
 
     config = String(default="")
     python = String(default="")
@@ -118,16 +118,16 @@ class ExportPanel:
         return text + FILM_COMMANDS_COMMENT if self.task.value == CONFIG_TASKS[0] else text
 
     def _load_chosen_file(self, attribute: str, previous: str, content: str) -> None:
-        """Passes the text of the chosen file to the page. content: content in base64; empty after a clearing.
-        The other arguments, from Bokeh, are not used."""
+        """Passes the text of the chosen file to the page. content: content of the file in base64; empty after
+        the field was cleared. The other arguments, from Bokeh, are not used."""
         if content:
             self._loaded(b64decode(content).decode(errors="replace"))
             self.file.clear()  # otherwise a browser does not report the same file when it is chosen again
 
 
 def _picture_buttons(cards: Sequence[Card], arm: GlyphRenderer) -> list[Select | Row]:
-    """Menu of the pictures, and a row of buttons, each of which saves the chosen picture in one file
-    format."""
+    """Menu of the pictures `cards`, and a row of buttons, each of which saves the chosen picture in one file
+    format. arm: animated line of the arm."""
     widgets = style_sheet("widgets.css")
     figures = {card.root.name: card.figure for card in cards}
     names = list(figures)
@@ -142,7 +142,8 @@ def _picture_buttons(cards: Sequence[Card], arm: GlyphRenderer) -> list[Select |
 
 
 def _saving_script(code: str, **arguments: Any) -> CustomJS:
-    """Browser script that saves a file; code: its lines after the function `download`."""
+    """Browser script that saves a file. code: lines of the script after the function `download`. arguments:
+    Bokeh models and texts that the script uses, by name."""
     return CustomJS(args=arguments, code=template_text("download.js") + code)
 
 

@@ -55,7 +55,7 @@ class Page:
             self.latest_inputs["diagram"] = inputs_of_request(SolveRequest("diagram", state))
             self.contents.show("diagram", stored.diagram, state)
 
-    def open(self, query: str) -> None:
+    def show_address(self, query: str) -> None:
         """Shows the state of an address, or an error message; query: part of the address after "?"."""
         try:
             self._change_to(from_address(query, self.state))
@@ -82,13 +82,14 @@ class Page:
         self._change_to(state.with_values(**values) if values else state)
 
     def solve(self, kind: str, tip: TipPosition | None = None) -> None:
-        """Sends a request of the kind `kind` to its solver process, even if the answer is already shown."""
+        """Sends a request of the kind `kind` to its solver process, even if the answer is already shown. tip:
+        position, in L, at which the tip was released; None if the answer does not depend on it."""
         self._cancel_request(kind)
         self._send_request(kind, tip, is_solved_again=True)
         self._show_solving()
 
     def stop_long_solves(self) -> None:
-        """Cancels long solves, with a sentence in their pictures. A dragged arm returns to its motion."""
+        """Cancels long solves. Pictures of automatic requests show a sentence; a dragged shape is removed."""
         for kind in kinds.STOPPABLE_REQUEST_KINDS:
             if kind in self.solving:
                 self._cancel_request(kind)
@@ -142,7 +143,7 @@ class Page:
             self._cancel_request(kind)
         if F is None:
             self._send_request(kinds.LOAD_REQUEST_KIND)
-        for kind in kinds.INSTANT_REQUEST_KINDS:
+        for kind in kinds.REQUEST_KINDS_AFTER_EVERY_CHANGE:
             self._send_request(kind)
         self.contents.show_state(state)
         if F is not None:
@@ -151,12 +152,11 @@ class Page:
         self.pause_timer.restart()
 
     def _show_error(self, sentence: str) -> None:
-        """Cancels all solves and shows the error message `sentence` in place of all pictures except a drawn
-        diagram."""
+        """Cancels all solves, and shows `sentence` in place of all pictures except a drawn diagram."""
         self.pause_timer.cancel()
         for kind in (kinds.LOAD_REQUEST_KIND, *kinds.TIP_REQUEST_KINDS, *kinds.MANUAL_REQUEST_KINDS):
             self._cancel_request(kind)
-        for kind in (*kinds.INSTANT_REQUEST_KINDS, *kinds.IDLE_REQUEST_KINDS):
+        for kind in (*kinds.REQUEST_KINDS_AFTER_EVERY_CHANGE, *kinds.IDLE_REQUEST_KINDS):
             if kind != "diagram" or kind in self.solving:
                 self._cancel_request(kind)
             if kind != "diagram" or not self.contents.diagram.is_drawn:
@@ -176,8 +176,8 @@ class Page:
         self._show_solving()
 
     def _send_request(self, kind: str, tip: TipPosition | None = None, is_solved_again: bool = False) -> None:
-        """Sends a new request of the kind `kind`. A stored answer replaces the solve, unless
-        `is_solved_again`. tip: position of the dragged tip, in L."""
+        """Sends a request of the kind `kind`, unless the latest request of this kind has the same inputs. A
+        stored answer replaces the solve, unless `is_solved_again`. tip: position of the dragged tip, in L."""
         state = state_to_solve(kind, self.state, self.drawn_around)
         cycle_file = self.stored if (kind, tip) == ("film", None) else None
         cycle = None if cycle_file is None else cycle_file.cycle_for_film(state)
@@ -228,8 +228,9 @@ class Page:
         self._show_solving()
 
     def _show_solving(self) -> None:
-        automatic = (kinds.LOAD_REQUEST_KIND, *kinds.INSTANT_REQUEST_KINDS, *kinds.IDLE_REQUEST_KINDS)
-        solving = [kind for kind in (*automatic, *kinds.MANUAL_REQUEST_KINDS) if kind in self.solving]
+        automatic = (kinds.LOAD_REQUEST_KIND, *kinds.REQUEST_KINDS_AFTER_EVERY_CHANGE)
+        others = (*kinds.IDLE_REQUEST_KINDS, *kinds.MANUAL_REQUEST_KINDS)
+        solving = [kind for kind in (*automatic, *others) if kind in self.solving]
         is_stoppable = any(kind in kinds.STOPPABLE_REQUEST_KINDS for kind in solving)
         names = [REQUEST_KIND_WORDS.get(kind, kind) + self.progress.get(kind, "") for kind in solving]
         text = f"solving {', '.join(names)} ..." if names else ""

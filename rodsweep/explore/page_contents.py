@@ -90,8 +90,8 @@ class PageContents:
         document.template_variables["page_css"] = template_text("page.css")
 
     def show_state(self, state: PageState) -> None:
-        """Marks the second parameter and the load of `state` in the diagram, and updates controls, address,
-        config and Python lines."""
+        """Marks the load and the second parameter of `state` in the diagram. Updates the pressure above the
+        field of the largest force, the button for curves of cycles, the config and the Python lines."""
         self.controls.show_largest_pressure(state, load_axis(state))
         x, y = (
             SLIDER_SCALES[state.tab][name].value(state.visible_texts[name])
@@ -148,7 +148,8 @@ class PageContents:
 
     def show_message(self, kind: str, sentence: str) -> None:
         """Shows a sentence in place of the pictures for requests of the kind `kind`; for requests on cycle
-        curves, drags and films, above the picture."""
+        curves, drags and films, above the picture. A request "load" has no picture of its own, and no
+        sentence is shown."""
         if kind == "load":  # the pictures of the other kinds state why there is no load
             return
         self.numbers.show(kind, None)

@@ -114,7 +114,7 @@ class PageState:
         return self.tab == "arm" and load_over_flutter(self.arm[self.load_name].strip()) is not None
 
     def largest_force(self) -> float:
-        """`F_max` as a number. Raises InputError unless the number is finite and positive."""
+        """`F_max` as a number, in k3/L^2. Raises InputError unless the number is finite and positive."""
         value = float_or_text(self.F_max)
         if not (isinstance(value, float) and 0 < value < float("inf")):
             raise InputError(
@@ -134,7 +134,7 @@ class PageState:
         return urlencode(keys)
 
     def yaml(self, task: str) -> str:
-        """Config for `rodsweep run`, in YAML, with the rod or arm of the visible tab and the given task."""
+        """Config for `rodsweep run`, in YAML, with the task `task` and the rod or arm of the visible tab."""
         used_names = (*CONFIG_CLASSES_BY_TASK[task].rod_parameters_used({}), *OPTIONAL_PARAMETER_NAMES)
         values: dict[str, Any] = {
             name: value for name, value in self.parameters().items() if name in used_names
@@ -168,7 +168,8 @@ def dimensionless_parameters_of(rod_or_arm: SoftRod | Arm) -> Mapping[str, float
 
 
 def float_or_text(text: str) -> Any:
-    """`text` as a float; the unchanged text if it is not a valid number, for a later error message."""
+    """`text` as a float; the unchanged text if it is no number, NaN or too large, for a later error
+    message."""
     try:
         value = float(text)
     except ValueError:

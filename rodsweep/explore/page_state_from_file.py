@@ -13,7 +13,7 @@ from ..config.base_config import Config
 from ..config.document.reading import config_from_resolved, read_config
 from ..config.task.branch import BranchConfig
 from ..errors import InputError
-from ..results import RESULT_ENDINGS
+from ..results import RESULT_SUFFIXES
 from .answers_from_file import AnswersFromFile
 from .page_state import (
     DEFAULT_ARM,
@@ -25,7 +25,7 @@ from .page_state import (
     PageState,
 )
 from .slider_scales import SLIDER_SCALES
-from .solving.diagram_curves_and_counts import DatasetOrArray
+from .solving.diagram_curves_and_unstable_counts import DatasetOrArray
 from .solving.diagrams import (
     diagram_from_arm_thresholds,
     diagram_from_rod_grid,
@@ -36,7 +36,8 @@ from .solving.requests import crushing_force
 KEYS_OUTSIDE_ARM_TAB = ("density_difference", "fluid_density", "law", "section")
 """Keys of an arm that are ignored or have a control outside the tab of the arm."""
 RELATIVE_PRESSURE_KEY = "pressure_over_flutter"
-"""Key of an arm's pressure relative to flutter; the page has it as text in the control of the pressure."""
+"""Key of an arm's pressure relative to flutter. The control of the pressure shows such a pressure as a text
+like "0.5 of flutter"."""
 
 
 def state_and_answers_from_file(path: Path) -> tuple[PageState, AnswersFromFile | None]:
@@ -45,7 +46,7 @@ def state_and_answers_from_file(path: Path) -> tuple[PageState, AnswersFromFile 
 
     Raises InputError for any other file, and for an arm that the page cannot show.
     """
-    if path.suffix not in RESULT_ENDINGS:
+    if path.suffix not in RESULT_SUFFIXES:
         return state_from_config(read_config(path)[0], path), None
     data = open_result(path)
     try:
@@ -58,10 +59,10 @@ def state_and_answers_from_file(path: Path) -> tuple[PageState, AnswersFromFile 
 def state_from_config(config: Config, path: Path, F_max: str = PAGE_F_MAX) -> PageState:
     """State of the page for a config.
 
-    Each parameter has the middle value of its axis; F has the middle of its values that do not crush the rod.
-    The parameter with the most values, except the load, is the second parameter of the diagram. path: file of
-    the config, for error messages. F_max: largest force if the config has none. Raises InputError for a list
-    of points.
+    Each parameter has the middle value of its axis; F has the middle of the values that do not crush a rod of
+    linear material. The parameter with the most values, except the load, is the second parameter of the
+    diagram. path: file of the config, for error messages. F_max: largest force if the config has none. Raises
+    InputError for a list of points, and for an arm that the page cannot show.
     """
     F_max = _largest_force(config, F_max)
     if config.parameters.arm is not None:
@@ -130,8 +131,8 @@ def _state_from_arm_config(config: Config, path: Path) -> PageState:
 
 
 def _second_parameter(tab: str, axes: Mapping[str, np.ndarray]) -> str:
-    """The parameter with the most values in `axes`, among the possible second parameters of the diagram on
-    the tab `tab`; "" if none of these parameters has several values. axes: values, (n,), by name."""
+    """Of the possible second parameters of the diagram on the tab `tab`, the parameter with the most values
+    in `axes`; "" if none of these parameters has several values. axes: values, (n,), by name."""
     candidates = [name for name in SECOND_PARAMETERS[tab] if name in axes and len(axes[name]) > 1]
     return max(candidates, key=lambda name: len(axes[name]), default="")
 
@@ -147,12 +148,12 @@ def _law_key(config: Config, path: Path) -> str:
 
 
 def _middle_value_text(values: np.ndarray) -> str:
-    """Middle of the values, (n,), as text: rounded, or with all digits if there is one value."""
+    """Middle of the values, (n,), as text with six digits; with 15 digits if there is a single value."""
     return f"{values[len(values) // 2]:.6g}" if len(values) > 1 else _fifteen_digit_text(values[0])
 
 
 def _fifteen_digit_text(value: float) -> str:
-    """A number with all its digits, except the last, in which the conversion of units makes errors."""
+    """A number with 15 digits; further digits would show rounding errors of the conversion of units."""
     return f"{value:.15g}"
 
 

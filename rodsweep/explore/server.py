@@ -35,11 +35,11 @@ LISTEN_ADDRESS = "127.0.0.1"
 ALLOWED_HOSTS = (LISTEN_ADDRESS, "localhost")
 """Host names under which a browser on this machine may open the page."""
 UNUSED_SESSION_MILLISECONDS = 5000
-"""A session ends this time after its page was closed, in milliseconds; until then a page whose connection was
-lost may connect again."""
+"""Time, in milliseconds, after which the session of a closed page ends; until then a page whose connection
+was lost may connect again."""
 SESSION_CHECK_MILLISECONDS = 1000
-"""Time between two searches for sessions to end, in milliseconds. The next page may have to wait for the
-solves of a closed page until its session ends."""
+"""Time, in milliseconds, between two searches for sessions of closed pages. The end of such a session also
+ends the solves of the closed page, for which the next page may have to wait."""
 
 
 class TcpNoDelayServer(HTTPServer):
@@ -77,7 +77,8 @@ class BatchTornado(BokehTornado):
     machine (DNS rebinding) is refused."""
 
     def find_handler(self, request: HTTPServerRequest, **options: Any) -> HTTPMessageDelegate:
-        """Finds the handler of a request; of a request to another host one that answers with status 403."""
+        """Returns the handler of a request; for a request to another host, a handler that answers with status
+        403."""
         if check_allowlist(request.host.lower(), self.websocket_origins):
             return super().find_handler(request, **options)
         return self.get_handler_delegate(request, ErrorHandler, {"status_code": HTTPStatus.FORBIDDEN})
@@ -137,10 +138,10 @@ class ExploreServer:
         bokeh_document.on_session_destroyed(lambda context: page.close())
         context = bokeh_document.session_context
         arguments = {} if context is None else context.request.arguments
-        page.open(_page_query(arguments))
+        page.show_address(_page_query_string(arguments))
 
 
-def _page_query(arguments: dict[str, list[bytes]]) -> str:
+def _page_query_string(arguments: dict[str, list[bytes]]) -> str:
     """Query string of the page's address, without Bokeh's own arguments."""
     from urllib.parse import urlencode
 

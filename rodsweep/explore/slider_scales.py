@@ -8,7 +8,7 @@ from ..errors import InputError
 from ..model.arm.quantities import GIVEN_QUANTITIES
 from ..model.parameters import PARAMETERS
 from ..model.units import quantity_in_si
-from ..post.summary.arm.arm_texts import quantity_words
+from ..post.summary.arm.arm_texts import printed_quantity_name
 from .page_state import PageState, dimensionless_parameters_of, float_or_text
 
 
@@ -78,8 +78,8 @@ class SliderScale:
 
 
 class PictureAxis(NamedTuple):
-    """Axis of a picture. label: text with the unit. factor_from_dimensionless: value in this unit per
-    dimensionless value."""
+    """Axis of a picture. label: text with the unit; for a length, only the unit. factor_from_dimensionless:
+    value, in this unit, of a quantity whose dimensionless value is 1."""
 
     label: str
     factor_from_dimensionless: float
@@ -123,7 +123,7 @@ def _arm_scale(
 ) -> SliderScale:
     """Scale of an arm's quantity `name`. lowest_value, highest_value: values at the ends of the slider, in
     `unit`. factor: factor from SI units to `unit`."""
-    label = f"{quantity_words(name)} ({unit})"
+    label = f"{printed_quantity_name(name)} ({unit})"
     return SliderScale(
         name=name,
         label=label,

@@ -14,7 +14,7 @@ rod, give the energy law dU/dt = Sigma(1) V(1) - <Gamma V, V> with U = <Sigma, C
 
 Arrays have the shape (3, ...) in the plane and (6, ...) in space. A compliance may be 0, since no formula
 divides by a compliance. `rodsweep.discretization.straight.mixed_form` uses these functions;
-`rodsweep.discretization.stress.balance` uses `algebra` and `BalanceCoefficients`.
+`rodsweep.discretization.stress.balance` uses `lie_algebra` and `BalanceCoefficients`.
 """
 
 from typing import Any, NamedTuple
@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .algebra import ALGEBRAS
+from .lie_algebra import ALGEBRAS
 
 Values = NDArray[Any]
 """Components of a deformation, velocity or stress: real, or complex for complex-step derivatives."""

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from .material.rod_material import RodMaterial
 
-RELATIVE_TAPER_TOLERANCE = 1e-9
+RELATIVE_MIN_TAPER_TOLERANCE = 1e-9
 """Relative tolerance of the smallest taper at which the force does not crush the tip."""
 
 
@@ -25,7 +25,7 @@ def uncrushed_interval(
     # The weakest section moves along the arm as the taper changes, so only a search finds the limit.
     if name == "taper":
         return _smallest_uncrushed_taper(material, other_values, (low, high), margin), high
-    relative_force = material.relative_crushing_force(other_values.get("taper", 1.0))
+    relative_force = material.crushing_force_over_k1(other_values.get("taper", 1.0))
     if name == "F":
         # Without a bound on the force, as for rubber, the product is inf and the interval is unchanged.
         return low, min(high, (1 - margin) * relative_force * other_values["k1"])
@@ -38,16 +38,17 @@ def _smallest_uncrushed_taper(
     material: RodMaterial, other_values: Mapping[str, float], interval: tuple[float, float], margin: float
 ) -> float:
     """Smallest taper of the interval at which the force does not crush the rod; the largest taper of the
-    interval if the force crushes every rod of the interval."""
+    interval if the force crushes every rod of the interval. other_values, margin: as in
+    `uncrushed_interval`."""
 
     def is_uncrushed(taper: float) -> bool:
-        return (1 - margin) * material.relative_crushing_force(taper) * other_values["k1"] > other_values["F"]
+        return (1 - margin) * material.crushing_force_over_k1(taper) * other_values["k1"] > other_values["F"]
 
     low, high = interval
     # A wider tip never weakens a section, so one sign change at most lies in the interval.
     if is_uncrushed(low) or not is_uncrushed(high):
         return low if is_uncrushed(low) else high
-    while high - low > RELATIVE_TAPER_TOLERANCE * high:
+    while high - low > RELATIVE_MIN_TAPER_TOLERANCE * high:
         middle = (low + high) / 2
         if is_uncrushed(middle):
             high = middle

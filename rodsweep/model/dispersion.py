@@ -4,8 +4,8 @@ A wave exp(i kappa u) with K = kappa^2 grows at the root w(K) of
 
     gamma3 c2 w^2 + [(c2 + gamma3) K + g nu] w + K^2 - F g K = 0.
 
-Its largest growth rate is used as a start of the search for eigenvalues of the finite rod, its wave number
-for the choice of the mesh. Both numbers are estimates only.
+The largest growth rate is used as a start of the search for eigenvalues of the finite rod, the wave number of
+this wave for the choice of the mesh. Both numbers are estimates only.
 """
 
 import math
@@ -18,7 +18,7 @@ from ..arrays import Array
 from .material.rod_material import LocalCoefficients, RodMaterial
 from .rod import Rod
 
-WAVE_SAMPLE_COUNT = 64
+WAVE_NUMBER_SAMPLE_COUNT = 64
 """Number of samples of K = kappa^2, with equal ratios. A ratio of 1.15 suffices for an estimate."""
 SAMPLES_PER_INTERVAL = 33
 """Number of points between two neighbouring breaks of an arm's profile at which local waves are computed, if
@@ -28,9 +28,9 @@ MAX_CACHED_ARMS = 16
 MIN_SQUARED_WAVE_NUMBER_RATIO = 1e-4
 """Ratio K/(F g) of the smallest sample of K = kappa^2. Every wave with K > F g decays."""
 SQUARED_WAVE_NUMBER_RATIOS: Array = MIN_SQUARED_WAVE_NUMBER_RATIO ** (
-    1 - np.arange(WAVE_SAMPLE_COUNT) / WAVE_SAMPLE_COUNT
+    1 - np.arange(WAVE_NUMBER_SAMPLE_COUNT) / WAVE_NUMBER_SAMPLE_COUNT
 )
-"""Ratios K/(F g) of all samples of K = kappa^2, increasing, (WAVE_SAMPLE_COUNT,)."""
+"""Ratios K/(F g) of all samples of K = kappa^2, increasing, (WAVE_NUMBER_SAMPLE_COUNT,)."""
 
 
 def largest_growth_and_wave_number(rod: Rod) -> tuple[float, float]:
@@ -41,7 +41,7 @@ def largest_growth_and_wave_number(rod: Rod) -> tuple[float, float]:
     # The growth is positive only for K < F g, so without such K every wave decays; nan counts as none.
     if not F * rod.g > 0:
         return 0.0, 0.0
-    rate, wave_number = _scaled_growth_and_wave_number(F * rod.g, rod.g * nu, c2, gamma3)
+    rate, wave_number = _scaled_peak_growth_and_wave_number(F * rod.g, rod.g * nu, c2, gamma3)
     return float(rate), float(wave_number)
 
 
@@ -59,14 +59,14 @@ class SampledArm(NamedTuple):
 def sampled_arm(rod: Rod) -> SampledArm:
     """Sample points of the arm `rod` and the local coefficients at these points, cached."""
     # Where the coefficients are constant a single sample is exact.
-    points, weights = _interval_midpoints(
+    points, weights = _interval_midpoints_and_lengths(
         rod.material, 1 if rod.material.is_piecewise_constant(rod.taper) else SAMPLES_PER_INTERVAL
     )
     return SampledArm(points, weights, rod.local_coefficients(points))
 
 
 @lru_cache(maxsize=MAX_CACHED_ARMS)
-def _interval_midpoints(material: RodMaterial, count: int) -> tuple[Array, Array]:
+def _interval_midpoints_and_lengths(material: RodMaterial, count: int) -> tuple[Array, Array]:
     """Returns (midpoints, lengths) of `count` equal parts of each interval between breaks of a profile,
     (points,) each."""
     # Midpoints avoid the breaks, at which the factors have two values.
@@ -77,16 +77,16 @@ def _interval_midpoints(material: RodMaterial, count: int) -> tuple[Array, Array
 
 
 @lru_cache(maxsize=MAX_CACHED_ARMS)
-def local_growths_and_wave_numbers(rod: Rod) -> tuple[Array, Array]:
-    """Returns (growth rates, wave numbers) of the most amplified wave at each point of `sampled_arm(rod)`,
-    (points,) each. A local wave travels on an infinitely long uniform rod with the coefficients of the arm at
-    the point. If all waves at a point decay, both numbers are 0."""
+def most_amplified_local_waves(rod: Rod) -> tuple[Array, Array]:
+    """Returns (growth rates in 1/tau2, wave numbers in 1/L) of the most amplified wave at each point of
+    `sampled_arm(rod)`, (points,) each. A local wave travels on an infinitely long uniform rod with the
+    coefficients of the arm at the point. If all waves at a point decay, both numbers are 0."""
     return _growths_and_wave_numbers(rod.F, sampled_arm(rod).local_coefficients)
 
 
 def largest_growth_at_ends(rod: Rod) -> float:
-    """The larger growth rate, in 1/tau2, of the most amplified local waves at the two ends of an arm: the
-    points of `sampled_arm` are too far apart for a thin tip."""
+    """The larger growth rate, in 1/tau2, of the most amplified local waves at the two ends of an arm. At a
+    thin tip the points of `sampled_arm` are too far apart to show this rate."""
     return float(_growths_and_wave_numbers(rod.F, local_coefficients_at_ends(rod))[0].max())
 
 
@@ -96,8 +96,9 @@ def local_coefficients_at_ends(rod: Rod) -> LocalCoefficients:
 
 
 def local_wave_numbers(w: Any, F: float, coefficients: LocalCoefficients) -> Array:
-    """Bound (|sqrt z+| + |sqrt z-|)/2 of |q| in the exponentials exp(+-q u) at the rate w of a rod with the
-    local coefficients, z+- = (q1 +- q2)^2, in 1/L. w, coefficients: arrays of shapes that broadcast."""
+    """Bound (|sqrt z+| + |sqrt z-|)/2, in 1/L, of |q1| and |q2| in the four exponentials exp(+-q1 u),
+    exp(+-q2 u) of a uniform rod with the local coefficients at the rate w; z+- = (q1 +- q2)^2. w: rate in
+    1/tau2. The shapes of w and of the coefficients broadcast."""
     nu, c2, c3, gamma2, gamma3, g = coefficients
     shear, rotation = c2 * gamma2, c3 * gamma3
     w = np.asarray(w, complex)
@@ -108,19 +109,19 @@ def local_wave_numbers(w: Any, F: float, coefficients: LocalCoefficients) -> Arr
 
 
 def fastest_growing_wave_numbers_at_ends(rod: Rod) -> Array:
-    """Wave numbers |q| of the exponentials at the two ends of an arm that grow at the largest rate of the
-    local waves there, (2,); 0 at an end at which all local waves decay."""
+    """Bounds of |q|, in 1/L, at the two ends of an arm, (2,): `local_wave_numbers` at the largest growth rate
+    of the local waves at each end; 0 at an end at which all local waves decay."""
     coefficients = local_coefficients_at_ends(rod)
     growth, _ = _growths_and_wave_numbers(rod.F, coefficients)
     return np.where(growth > 0, local_wave_numbers(growth, rod.F, coefficients), 0.0)
 
 
 def _growths_and_wave_numbers(F: float, coefficients: LocalCoefficients) -> tuple[Array, Array]:
-    """Returns (growth rates, wave numbers) as `local_growths_and_wave_numbers`, at the points of
-    `coefficients`."""
+    """Returns (growth rates, wave numbers) of the most amplified local waves, at the points of
+    `coefficients`, see `most_amplified_local_waves`. F: follower force."""
     nu, c2, c3, gamma2, gamma3, g = coefficients
     # A local rod has its own units: the formula needs bending compliance and drag scaled to 1.
-    rate, wave_number = _scaled_growth_and_wave_number(
+    rate, wave_number = _scaled_peak_growth_and_wave_number(
         np.maximum(F * c3 * g, 0.0), g * nu, c2 / c3, gamma3 / gamma2
     )
     # Rates return to the unit tau2 of the base; the wave number already is in 1/L.
@@ -136,7 +137,9 @@ def expected_unstable_count(rod: Rod) -> float:
     return float(weights @ np.sqrt(np.maximum(rod.F * coefficients.c3 * coefficients.g, 0.0))) / math.pi
 
 
-def _scaled_growth_and_wave_number(max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any) -> tuple[Any, Any]:
+def _scaled_peak_growth_and_wave_number(
+    max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any
+) -> tuple[Any, Any]:
     """Returns (growth rate, wave number) of the most amplified wave for k3 = gamma2 = 1; the rate is 0 if
     every wave decays.
 
@@ -170,9 +173,9 @@ def _scaled_growth_and_wave_number(max_K: Any, damping_at_0: Any, c2: Any, gamma
 def _sampled_growth_and_wave_number(
     max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any
 ) -> tuple[Array, Array]:
-    """`_scaled_growth_and_wave_number` by comparison of WAVE_SAMPLE_COUNT wave numbers. On a pulled rod with
-    g < 0 the growth rate may have a maximum at K = 0 only, or no maximum. Arguments: as in
-    `_scaled_growth_and_wave_number`, (..., 1)."""
+    """`_scaled_peak_growth_and_wave_number` by comparison of WAVE_NUMBER_SAMPLE_COUNT wave numbers. On a
+    pulled rod with g < 0 the growth rate may have a maximum at K = 0 only, or no maximum. Arguments: as in
+    `_scaled_peak_growth_and_wave_number`, (..., 1)."""
     product = c2 * gamma3
     K = max_K * SQUARED_WAVE_NUMBER_RATIOS
     # Both branches of each `where` are evaluated, also where they divide by 0.

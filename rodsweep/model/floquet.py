@@ -2,8 +2,8 @@
 
 
 def min_unstable_multiplier_count(outside_count: int, largest_modulus: float, modulus_error: float) -> int:
-    """Lower bound on the number of nontrivial Floquet multipliers outside the unit circle. 0: the cycle is
-    stable; -1: its stability is undecided.
+    """Lower bound on the number of nontrivial Floquet multipliers outside the unit circle. A result of 0
+    means that the cycle is stable, -1 that its stability is undecided.
 
     outside_count: number of nontrivial multipliers outside the unit circle, or -1 if one of them has modulus
     1 within its error. largest_modulus, modulus_error: largest modulus of a nontrivial multiplier, and its

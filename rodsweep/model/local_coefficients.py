@@ -15,8 +15,9 @@ from .rod import Rod
 
 
 def local_coefficient_array(rods: Sequence[Rod], u: Array, remainder: Array | None = None) -> Array:
-    """`LocalCoefficients` at points u, (...,), of n rods of one material, (6, n, *u.shape). No point may be a
-    break of the profile. remainder: exact coordinates of the points minus u; None: u is exact."""
+    """The `LocalCoefficients` of n rods of one material at points u, (...,), as an array, (6, n, *u.shape),
+    in the order of the fields. No point may be a break of the profile. remainder: exact coordinates of the
+    points minus u; None: u is exact."""
     material = rods[0].material
     coefficients = np.empty((6, len(rods), u.size))
     for i, rod in enumerate(rods):

@@ -23,16 +23,21 @@ class Range:
     """The range as a phrase for messages on invalid values, like "a finite number above 0"."""
     schema_bounds: Mapping[str, float] = field(default_factory=dict)
     """Bounds of the range by JSON schema keyword, like {"minimum": 0}; empty if every number is allowed."""
-    remark: str = ""
+    exclusion_reason: str = ""
     """Why some finite numbers above 0 lie outside the range, in parentheses, for messages."""
 
     def description_for_rejected(self, value: float) -> str:
-        """The description of the range, for a message on `value` outside of it; with the remark if value is a
-        finite number above 0."""
-        return f"{self.description} {self.remark}" if self.remark and 0 < value < inf else self.description
+        """The description of the range, for a message on `value` outside the range; with `exclusion_reason`
+        if `value` is a finite number above 0."""
+        return (
+            f"{self.description} {self.exclusion_reason}"
+            if self.exclusion_reason and 0 < value < inf
+            else self.description
+        )
 
     def finite_description_for_rejected(self, value: float) -> str:
-        """`description_for_rejected`, for a value that may not be inf even where the range contains inf."""
+        """`description_for_rejected` where only finite values are allowed: the text does not offer inf, even
+        if the range contains inf."""
         description = self.description.partition(", or inf")[0]
         if "finite" not in description:
             description = description.replace("a number", "a finite number")
@@ -54,7 +59,7 @@ class Parameter:
     """Symbol of the paper, in TeX."""
     unit: str
     meaning: str
-    remark: str = ""
+    meaning_suffix: str = ""
     """Text that is appended to the meaning of the parameter in result files."""
     allowed_range: Range
     is_in_linear_problem: bool = True
@@ -103,8 +108,8 @@ class Parameter:
 
     @property
     def long_name(self) -> str:
-        """Meaning and remark of the parameter, for the attribute `long_name` in result files."""
-        return self.meaning + self.remark
+        """`meaning` and `meaning_suffix`, for the attribute `long_name` in result files."""
+        return self.meaning + self.meaning_suffix
 
     def require_in_range(self, value: float) -> None:
         """Raises ValueError for a value outside the range of the parameter. `Rod` checks F < k1."""
@@ -127,7 +132,7 @@ def stiffness_parameter(name: str, symbol: str, meaning: str, rigid_adjective: s
         symbol=symbol,
         unit="k3/L^2",
         meaning=meaning,
-        remark=f"; inf is {rigid_adjective}",
+        meaning_suffix=f"; inf is {rigid_adjective}",
         allowed_range=Range(
             lambda value: value > 0 and 1 / value < inf,
             f"a number above 0, or inf for an {rigid_adjective} rod",
@@ -146,7 +151,7 @@ PARAMETERS = {
             symbol=r"\tilde F",
             unit="k3/L^2",
             meaning="follower force",
-            remark=" at the tip, along -e1",
+            meaning_suffix=" at the tip, along -e1",
             allowed_range=Range(isfinite, "a finite number below k1 (negative values pull)"),
         ),
         stiffness_parameter("k1", r"\tilde k_1", "stretch stiffness", "inextensible"),
@@ -176,7 +181,7 @@ PARAMETERS = {
             symbol=r"r(1)/r(0)",
             unit="1",
             meaning="tip radius over base radius",
-            remark=" of a circular cone",
+            meaning_suffix=" of a circular cone",
             allowed_range=Range(
                 lambda value: MIN_TAPER <= value <= MAX_TAPER,
                 f"a number from {MIN_TAPER:g} to {MAX_TAPER:g}",

@@ -98,26 +98,27 @@ class Rod:
         return self._coefficients
 
     def local_coefficients(self, u: Array, remainder: Array | None = None) -> LocalCoefficients:
-        """`RodMaterial.local_coefficients` of this rod at points u, (points,), away from breaks."""
+        """`RodMaterial.local_coefficients` of this rod at points u, (...,), away from breaks. remainder:
+        exact coordinates of the points minus u; None: u is exact."""
         at_base = stiffnesses_and_drags_at_base(self.values)
         return self.material.local_coefficients(self.F, at_base, u, remainder)
 
     @property
     def crushing_force(self) -> float:
         """The force that crushes the weakest section, in k3/L^2; inf if no force crushes the section."""
-        return self.material.relative_crushing_force(self.taper) * self.stretch_stiffness
+        return self.material.crushing_force_over_k1(self.taper) * self.base_stretch_stiffness
 
     @property
     def least_rotational_drag(self) -> float:
         """Smallest rotational drag along the arm, in gamma2 L^2."""
         if self.is_uniform_and_linear:
-            return self.rotational_drag
-        return self.material.relative_least_rotational_drag(self.taper) * self.rotational_drag
+            return self.base_rotational_drag
+        return self.material.relative_least_rotational_drag(self.taper) * self.base_rotational_drag
 
     @property
     def least_axial_drag(self) -> float:
         """Smallest axial drag along the arm, in gamma2."""
-        return self.material.relative_least_axial_drag * self.axial_drag
+        return self.material.relative_least_axial_drag * self.base_axial_drag
 
     @property
     def is_uniform(self) -> bool:
@@ -131,9 +132,10 @@ class Rod:
 
     @property
     def equivalent_linear_rod_and_rate_factor(self) -> tuple["Rod", float]:
-        """Returns (linear rod, rate factor). Eigenvalues of this rod are those of the linear rod, times the
-        factor. With the bending factor K = B(nu) of this rod's law, the linear rod has the coefficients (F/K,
-        nu, c2 K, gamma3), and the factor is K. Raises NotUniform for an arm that varies."""
+        """Returns (linear rod, rate factor). The eigenvalues of this rod are the eigenvalues of the linear
+        rod, times the factor. With the bending factor K = B(nu) of this rod's law, the linear rod has the
+        coefficients (F/K, nu, c2 K, gamma3), and the factor is K. Raises NotUniform for an arm that
+        varies."""
         if not self.is_uniform:
             raise NotUniform(f"{self} is not uniform")
         law = self.material.constitutive_law
@@ -141,8 +143,8 @@ class Rod:
         # With the unit K k3 the bending stiffness is 1; the unit of time is then gamma2 L^4/(K k3).
         K = float(law.bending_factor(1 - shortening))
         F = self.F / K
-        k1 = F / shortening if shortening else self.stretch_stiffness / K
-        return Rod(F=F, k1=k1, k2=1 / (self.c2 * K) if self.c2 else inf, gamma3=self.rotational_drag), K
+        k1 = F / shortening if shortening else self.base_stretch_stiffness / K
+        return Rod(F=F, k1=k1, k2=1 / (self.c2 * K) if self.c2 else inf, gamma3=self.base_rotational_drag), K
 
     @property
     def without_nonlinear_parameters(self) -> "Rod":
@@ -154,7 +156,7 @@ class Rod:
         return float(PARAMETERS[parameter_name].coordinate(getattr(self, parameter_name)))
 
     def with_coordinate(self, parameter_name: str, coordinate: float) -> "Rod":
-        """The rod with another coordinate of one parameter; ValueError for an invalid coordinate."""
+        """The rod with a new coordinate of one parameter. Raises ValueError for an invalid coordinate."""
         return self.with_values(**{parameter_name: PARAMETERS[parameter_name].value(coordinate)})
 
     def with_values(self, **values: float) -> "Rod":
@@ -163,14 +165,14 @@ class Rod:
         return Rod(**{**self.values, **values}, material=self.material)
 
     @property
-    def stretch_stiffness(self) -> float:
+    def base_stretch_stiffness(self) -> float:
         """Stretch stiffness at the base, in k3/L^2; inf for an inextensible rod."""
         return float(stiffnesses_and_drags_at_base(self.values)["k1"])
 
     @property
     def c1(self) -> float:
         """Stretch compliance 1/k1 at the base, in L^2/k3; 0 for an inextensible rod."""
-        return 1 / self.stretch_stiffness
+        return 1 / self.base_stretch_stiffness
 
     @property
     def c2(self) -> float:
@@ -179,26 +181,27 @@ class Rod:
 
     @property
     def nu(self) -> float:
-        """Stretch of the straight rod, nu = 1 - F c1 (Sec. V). Raises NotUniform as `coefficients`."""
+        """Stretch of the straight rod, nu = 1 - F c1 (Sec. V). Raises NotUniform like `coefficients`."""
         return self.coefficients.nu
 
     @property
     def g(self) -> float:
-        """Coupling of shear and rotation, g = nu + F c2 = mu/k2 (Sec. V). Raises NotUniform as `nu`."""
+        """Coupling of shear and rotation, g = nu + F c2 = mu/k2 (Sec. V). Raises NotUniform like `nu`."""
         return self.nu + self.F * self.c2
 
     @property
-    def rotational_drag(self) -> float:
+    def base_rotational_drag(self) -> float:
         """Rotational drag at the base, in gamma2 L^2."""
         return float(stiffnesses_and_drags_at_base(self.values)["gamma3"])
 
     @property
-    def axial_drag(self) -> float:
+    def base_axial_drag(self) -> float:
         """Axial drag at the base, in gamma2."""
         return float(stiffnesses_and_drags_at_base(self.values)["gamma1"])
 
     def coefficient_derivative(self, parameter_name: str) -> Coefficients:
-        """Derivative of the affine `coefficients` with respect to the coordinate of a parameter."""
+        """Derivative of `coefficients` with respect to the coordinate of a parameter; the coefficients are
+        affine in this coordinate."""
         slopes = self._derivatives_by_coordinate(parameter_name)
         F = slopes.get("F", 0.0)
         c1 = slopes.get("k1", 0.0)
@@ -208,9 +211,9 @@ class Rod:
 
     @property
     def balance_coefficients(self) -> BalanceCoefficients:
-        """Coefficients of the balance for motion in the plane. Raises NotUniform as `coefficients`."""
+        """Coefficients of the balance for motion in the plane. Raises NotUniform like `coefficients`."""
         compliance = np.array([self.c1, self.c2, 1.0])
-        drag = np.array([self.axial_drag, 1.0, self.rotational_drag])
+        drag = np.array([self.base_axial_drag, 1.0, self.base_rotational_drag])
         return BalanceCoefficients(compliance, drag, self.F, axial_vector(self.nu, 3))
 
     def cross_sections_at(self, u: Array) -> CrossSections:
@@ -220,8 +223,8 @@ class Rod:
     def cross_section_derivatives(
         self, parameter_name: str, u: Array, sections: CrossSections | None = None
     ) -> CrossSections:
-        """Derivatives of `sections(u)` with respect to the coordinate of a parameter; u: (points,). sections:
-        `sections(u)`, if known."""
+        """Derivatives of `cross_sections_at(u)` with respect to the coordinate of a parameter; u: (points,).
+        sections: value of `cross_sections_at(u)`, if known."""
         slopes = self._derivatives_by_coordinate(parameter_name)
         known = self.cross_sections_at(u) if sections is None else sections
         return self.material.cross_section_derivatives(known, self.F, self.taper, slopes, u)

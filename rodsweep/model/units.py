@@ -29,13 +29,18 @@ CONVERSION_CACHE_SIZE = 1000
 """Maximum number of cached conversion factors. A config has about ten different units."""
 COMMON_UNITS = ("cm", "mm", "kPa", "MPa", "GPa", "Pa s", "mPa s", "kPa s", "mN", "kg/m^3", "g/cm^3", "mbar")
 """Units that are suggested if the user's text differs from the unit only in blanks or capital letters."""
-NUMBER_PATTERN = r"\s*((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,2})?)"
-"""Pattern of a number of 0 or above that a load may be of flutter; the exponent cannot overflow."""
-MULTIPLE_OF_FLUTTER_PATTERN = re.compile(NUMBER_PATTERN + r"\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
+UNSIGNED_NUMBER_PATTERN = r"\s*((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,2})?)"
+"""Pattern of the number, 0 or above, in a load relative to flutter; with two digits of exponent it cannot
+overflow."""
+MULTIPLE_OF_FLUTTER_PATTERN = re.compile(
+    UNSIGNED_NUMBER_PATTERN + r"\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII
+)
 """Pattern of a load as a multiple of the flutter threshold, "1.2 of flutter" or "120 % of flutter"."""
 INTENDED_RELATIVE_LOAD_PATTERN = re.compile(r"%?\s*(of|times|above|below)\b|.*flutter", re.ASCII)
 """Pattern of the unit of a text that is meant as a load relative to flutter, such as "of fluter"."""
-PERCENT_FROM_FLUTTER_PATTERN = re.compile(NUMBER_PATTERN + r"\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
+PERCENT_FROM_FLUTTER_PATTERN = re.compile(
+    UNSIGNED_NUMBER_PATTERN + r"\s*%\s*(above|below)\s+flutter\s*", re.ASCII
+)
 """Pattern of a load as a distance from the flutter threshold, "20 % above flutter"."""
 
 LOAD_UNITS = ("Pa", "N")
@@ -108,8 +113,8 @@ def _number_in_si(name: str, quantity: Any, si_unit: str, allowed_text: str) -> 
         return float(number)
     except (TypeError, ValueError, OverflowError):
         raise InputError(
-            f"{name} = {_shortened_text(quantity)} is not one quantity; write {allowed_text}, or one number "
-            f"in {si_unit}"
+            f"{name} = {_shortened_text(quantity)} is not a single quantity; write {allowed_text}, or a "
+            f"number in {si_unit}"
         ) from None
 
 
@@ -195,9 +200,9 @@ def load_over_flutter(text: GivenQuantity) -> float | None:
 
 
 def with_si_prefix(value: float, unit: str) -> tuple[float, str]:
-    """Returns (factor, prefixed unit): `value` in the SI unit `unit` is factor * value in the prefixed unit.
-    The SI prefix makes the number prefixed: with_si_prefix(0.002, "m") is (1000.0, "mm"). For a value that is
-    0, inf or nan, returns (1.0, `unit`)."""
+    """Returns (factor, prefixed unit) such that `value` in the SI unit `unit` equals factor * value in the
+    prefixed unit. The prefix suits the size of the value: with_si_prefix(0.002, "m") is (1000.0, "mm"). For a
+    value that is 0, inf or nan, returns (1.0, `unit`)."""
     if not value or not math.isfinite(value):
         return 1.0, unit
     prefixed = unit_registry().Quantity(value, unit).to_compact()

@@ -46,9 +46,13 @@ class RodBranches:
         self.curves = [stored_branch(self._v, parameter, number) for number in range(1, complete + 1)]
 
     @property
-    def special_point_errors(self) -> dict[float, float]:
+    def special_point_parameter_errors(self) -> dict[float, float]:
         """Absolute error of the parameter at each special point of all branches, by parameter value."""
-        return {value: error for curve in self.curves for value, error in curve.special_point_errors.items()}
+        return {
+            value: error
+            for curve in self.curves
+            for value, error in curve.special_point_parameter_errors.items()
+        }
 
     @property
     def stable_cycle_ranges(self) -> list[ParameterRange]:
@@ -66,7 +70,7 @@ class RodBranches:
     @property
     def coexistence_ranges(self) -> list[ParameterRange]:
         """Ranges of the parameter in which a stable cycle exists and the straight rod is stable."""
-        stable_straight, _ = self.straight_rod_stability_ranges(followed_range(self.view))
+        stable_straight, _ = self.straight_rod_stable_unstable_ranges(followed_range(self.view))
         return intersection_of_ranges(self.stable_cycle_ranges, stable_straight)
 
     @property
@@ -76,7 +80,7 @@ class RodBranches:
         straight = int(self._v["unstable_at_start"]) >= 0 and bool((counts >= 0).all())
         return straight and all(curve.is_fully_known for curve in self.curves)
 
-    def straight_rod_stability_ranges(
+    def straight_rod_stable_unstable_ranges(
         self, span: ParameterRange
     ) -> tuple[list[ParameterRange], list[ParameterRange]]:
         """Returns (stable, unstable): ranges within `span` in which the straight rod is stable, or unstable.
@@ -86,7 +90,9 @@ class RodBranches:
         return union_of_ranges(stable), union_of_ranges(unstable)
 
     def straight_rod_stability_intervals(self, span: ParameterRange) -> list[tuple[float, float, int]]:
-        """Intervals (low, high, stability of the straight rod: 1, 0, -1 if unknown) between Hopf points."""
+        """Intervals (low, high, stability of the straight rod) between Hopf points, from `span[0]` to
+        `span[1]`, or to the last Hopf point if this lies beyond `span[1]`. Stability: 1 stable, 0 unstable,
+        -1 unknown."""
         stored = self._v
         is_hopf = stored["special_kind"] == HOPF
         values, indices = np.unique(stored["special_at"][is_hopf], return_index=True)
@@ -100,7 +106,7 @@ class RodBranches:
 
 
 def runs_of_equal_stability(stable: NDArray[np.integer]) -> Iterator[tuple[slice, int]]:
-    """Yields (vertices, stability) of each run of equal values in `stable`, (n - 1,). vertices: a
-    slice."""
+    """Yields (vertices, stability) of each run of equal values in `stable`, the stability between n
+    neighbouring vertices, (n - 1,). vertices: slice of the vertices of the run, with both ends."""
     starts = [0, *(np.flatnonzero(np.diff(stable)) + 1), len(stable)]
     yield from ((slice(start, end + 1), int(stable[start])) for start, end in pairwise(starts) if end > start)

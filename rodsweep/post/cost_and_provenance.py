@@ -10,9 +10,9 @@ from ..results.file.view import ResultView
 from ..wording import counted, duration, plural
 
 
-def time_lines(view: ResultView, is_computed: np.ndarray, noun: str) -> list[str]:
+def computing_time_lines(view: ResultView, is_computed: np.ndarray, noun: str) -> list[str]:
     """Lines about the computing time of the points in the mask `is_computed`, of any shape; an empty list if
-    no point is computed."""
+    no point is computed. noun: word for a point."""
     if not is_computed.any():
         return []
     seconds = view.variables["seconds"][is_computed]
@@ -46,9 +46,9 @@ def _dates_clause(attributes: dict[str, Any]) -> str:
     return "not finished yet"
 
 
-def rank_lines(attributes: dict[str, Any], noun: str) -> list[str]:
+def last_run_lines(attributes: dict[str, Any], noun: str) -> list[str]:
     """Lines about the last run: ranks, hosts, points, shard, reason of a stop, and fraction of the time spent
-    solving; empty if not stored."""
+    solving; empty if not stored. noun: word for a point."""
     if RANK_STATISTICS_ATTRIBUTES[0] not in attributes:
         return []
     points, busy_seconds, idle_seconds = (

@@ -25,8 +25,9 @@ def material_of_rods(view: ResultView) -> RodMaterial:
 
 
 def uncrushed_ranges(view: ResultView, rods: Iterable[int]) -> list[ParameterRange]:
-    """(start, stop) of the followed range of branches without forces that crush the rod, for each of the
-    rods; stop <= start if all forces of the range crush the rod. rods: indices among the points of the file.
+    """(start, stop) of the part of the followed range in which the force does not crush the rod, for each of
+    the rods; stop <= start if the force crushes the rod in the whole range. rods: indices among the points of
+    the file.
     """
     range_start, range_end = followed_range(view)
     parameter = followed_parameter(view)
@@ -41,5 +42,5 @@ def crushing_ratio(view: ResultView, parameters: PlaneParameters, x: Array, y: A
     0 if no force crushes the rod. x, y: values of the parameters, of shapes that broadcast."""
     fixed = {name: np.asarray(values[0]) for name, values in view.parameter_values.items()}
     values = {"taper": np.asarray(1.0)} | fixed | {parameters.line_parameter: x, parameters.row_parameter: y}
-    force_per_k1 = material_of_rods(view).relative_crushing_forces(values["taper"])
+    force_per_k1 = material_of_rods(view).crushing_forces_over_k1(values["taper"])
     return np.asarray(values["F"] / (values["k1"] * force_per_k1) + 0 * (x + y))

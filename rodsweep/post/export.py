@@ -55,7 +55,7 @@ def _write_csv(table: Table, separator: str, includes_units: bool, stream: TextI
     )
     for start in range(0, table.row_count, EXPORT_BATCH_ROWS):
         texts = [
-            column.with_rows(slice(start, start + EXPORT_BATCH_ROWS)).texts() for column in table.columns
+            column.with_rows(slice(start, start + EXPORT_BATCH_ROWS)).csv_texts() for column in table.columns
         ]
         csv_writer.writerows(zip(*texts, strict=True))
 

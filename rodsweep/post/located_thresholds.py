@@ -17,7 +17,7 @@ from ..results.file.view import ResultView
 from ..results.layouts.thresholds import CROSSING_KINDS
 from ..sweep.points.points import ParameterLine
 
-HOPF_DISTANCE_OF_UNCERTAIN_SIGN = 1e-9
+HOPF_DISTANCE_OF_UNCERTAIN_GROWTH = 1e-9
 """At points of the file that are closer to a Hopf point than this relative distance, the growth rate is
 rounding error."""
 HOPF_KINDS_CHANGING_STABILITY = {("hopf", 2), ("restabilization", 0)}
@@ -27,7 +27,8 @@ changes. At all other Hopf points the rod is unstable on both sides."""
 
 @dataclass(frozen=True, slots=True)
 class LocatedThreshold:
-    """Threshold of the straight rod at the parameter value `position`. error: absolute error estimate.
+    """Threshold of the straight rod at the parameter value `position`. position_error: absolute error
+    estimate.
 
     kind: `hopf` if a pair of eigenvalues crosses the imaginary axis and the rod is unstable above `position`;
     `restabilization` if the rod is stable above; `onset` if two real eigenvalues merge into a pair while the
@@ -35,7 +36,7 @@ class LocatedThreshold:
     """
 
     position: float
-    error: float
+    position_error: float
     kind: str
     frequency: float = nan
     """Angular frequency of the pair that crosses the imaginary axis, in 1/tau2; NaN if unknown, and for an
@@ -49,7 +50,10 @@ class LocatedThreshold:
 
     def equals_within_errors(self, point: "LocatedThreshold") -> bool:
         """Whether two located thresholds have equal kinds, and positions that are equal within the errors."""
-        return self.kind == point.kind and abs(self.position - point.position) <= self.error + point.error
+        return (
+            self.kind == point.kind
+            and abs(self.position - point.position) <= self.position_error + point.position_error
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,8 +139,8 @@ class StoredThresholds:
         """Thresholds on a line of points, in increasing order of the parameter; an empty list for a line
         without points.
 
-        Two neighbouring points bracket a change of stability if their growth rates differ in sign and the
-        number of located changes of stability between them is even, because a search failed.
+        Two neighbouring points bracket a change of stability that a failed search did not locate, if their
+        growth rates differ in sign and the number of located changes of stability between them is even.
         """
         if not len(line.values):
             return []
@@ -158,5 +162,5 @@ class StoredThresholds:
 
 def _lies_between(point: LocatedThreshold, low: float, high: float) -> bool:
     """Whether a located threshold lies between `low` and `high`, within its error or rounding error."""
-    margin = max(point.error, HOPF_DISTANCE_OF_UNCERTAIN_SIGN * abs(point.position))
+    margin = max(point.position_error, HOPF_DISTANCE_OF_UNCERTAIN_GROWTH * abs(point.position))
     return bool(low - margin <= point.position <= high + margin)

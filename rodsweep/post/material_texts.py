@@ -8,8 +8,8 @@ from ..wording import counted
 
 
 def material_keys_of(view: ResultView) -> Mapping[str, Any]:
-    """The given keys of law, section, profile and segments of the arms of a file, in the section `material`
-    of the config or in the arm; empty for uniform arms of linear material."""
+    """Law, section, profile and segments of the arms of a file, by key, if the section `material` of the
+    config or the arm has these keys; empty for uniform arms of linear material."""
     arm = view.config.get("parameters", {}).get("arm") or {}
     section = dict(view.config.get("material") or {}) | {name: value for name, value in arm.items() if value}
     shape_keys = {name: section[name] for name in ("profile", "segments") if section.get(name)}

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 def require_output_path(output: Path, endings: Sequence[str], noun: str, inputs: Sequence[Path] = ()) -> None:
     """Raises InputError if `output` has a suffix not in `endings`, if its directory does not exist, or if
-    `output` is a directory or one of the files `inputs`; EnvironmentIncomplete if nothing may be written into
-    its directory. noun: noun for the file, for the message."""
+    `output` exists but is no regular file, or is one of the files `inputs`; EnvironmentIncomplete if its
+    directory is not writable. noun: noun for the file, for the message."""
     if output.suffix not in endings:
         raise InputError(f"--output {output}: the name must end in {', '.join(endings)}")
     if not output.parent.is_dir():
@@ -31,8 +31,8 @@ def require_output_path(output: Path, endings: Sequence[str], noun: str, inputs:
 
 @contextmanager
 def temporary_output_path(output: Path) -> Iterator[Path]:
-    """Context manager that yields a temporary path beside `output`, with the same suffix, and at the end
-    renames the file that was written there to `output`.
+    """Context manager that yields a temporary path beside `output`, with the same suffix. At the end the file
+    written at the temporary path is renamed to `output`.
 
     An error or a killed process therefore leaves no incomplete file with the name `output`. Raises
     EnvironmentIncomplete if the disk refuses, as when it is full.
@@ -52,7 +52,7 @@ def temporary_output_path(output: Path) -> Iterator[Path]:
 
 @contextmanager
 def atomic_write(output: Path) -> Iterator[TextIO]:
-    """Context manager that opens a text file for writing, which takes the name `output` at the end; see
+    """Context manager that opens a text file for writing; at the end the file gets the name `output`, see
     `temporary_output_path`."""
     with temporary_output_path(output) as partial, partial.open("w", newline="", encoding="utf-8") as stream:
         yield stream

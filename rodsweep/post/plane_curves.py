@@ -27,9 +27,9 @@ def plane_parameters(view: ResultView) -> PlaneParameters:
 def points_by_curve(
     view: ResultView, parameters: PlaneParameters, prefix: str, kind: int | None = None
 ) -> dict[int, Array]:
-    """Points of each curve of a phase diagram, (n, 2), by number of the curve. prefix: "curve" for boundary
-    curves, "cycle_curve" for curves of special points of cycles. kind: code of the kind of the curves; None:
-    all kinds."""
+    """Points (line parameter, row parameter) of each curve of a phase diagram, (n, 2), by number of the
+    curve. prefix: "curve" for boundary curves, "cycle_curve" for curves of special points of cycles. kind:
+    code of the kind of the curves; None: all kinds."""
     variables = view.variables
     numbers = variables[f"{prefix}_number"]
     chosen_numbers = numbers if kind is None else numbers[variables[f"{prefix}_kind"] == kind]

@@ -20,6 +20,6 @@ def union_of_ranges(ranges: Iterable[ParameterRange]) -> list[ParameterRange]:
 
 
 def intersection_of_ranges(first: list[ParameterRange], second: list[ParameterRange]) -> list[ParameterRange]:
-    """Intersection of two unions of ranges; ranges of zero length are left out."""
+    """Intersection of two unions of ranges, each given as a list; ranges of zero length are left out."""
     overlaps = [(max(low1, low2), min(high1, high2)) for low1, high1 in first for low2, high2 in second]
     return [(low, high) for low, high in overlaps if high > low * (1 + RANGE_GAP_TOLERANCE)]

@@ -23,7 +23,8 @@ EARLY_STOP_REASONS = ("no_cycle_found", "list_full")
 
 @dataclass(frozen=True, slots=True)
 class StoredSpecialPoint:
-    """Special point of a branch. Each field is the variable special_FIELD; `kind` and `reason` are words."""
+    """Special point of a branch. A field NAME has the value of the variable special_NAME; `kind` and `reason`
+    are words."""
 
     kind: str
     at: float
@@ -36,8 +37,8 @@ class StoredSpecialPoint:
     """Largest y of the tip at the special point, in L; 0 at a Hopf point."""
     reason: str
     unstable_after: int
-    """At a Hopf point: number of unstable modes of the straight rod beyond it in the parameter; -1 at other
-    points."""
+    """At a Hopf point: number of unstable modes of the straight rod at slightly larger values of the
+    parameter; -1 at other points."""
     meets: int
     """At a symmetry breaking: number, from 1, of the second branch that begins or ends there; -1: no
     branch."""
@@ -52,11 +53,11 @@ class StoredSpecialPoint:
 
 @dataclass(frozen=True, slots=True)
 class StoredBranch:
-    """Branch of is_cycle: a curve through n vertices, which are stored cycles and special points.
+    """Branch of cycles: a curve through n vertices, which are stored cycles and special points.
 
-    parameter, tip_y_max, period: followed parameter, largest y of the tip, and period at the vertices, (n,).
-    Between two special points the parameter changes in one direction; a cycle beyond one of them, by less
-    than twice its error, has the parameter of this point.
+    parameter, tip_y_max, period: followed parameter, largest y of the tip in L, and period in tau2, at the
+    vertices, (n,) each. Between two special points the parameter changes in one direction; a cycle that lies
+    beyond one of these points by at most twice its error is moved to the point.
     """
 
     parameter: Array
@@ -71,7 +72,7 @@ class StoredBranch:
 
     @property
     def starts_outside_range(self) -> bool:
-        """Whether the branch begins at an end of the range, to which it leads from beyond."""
+        """Whether the branch begins at an end of the range and continues beyond this end."""
         return self.special_points[0].kind == "end"
 
     @property
@@ -81,7 +82,7 @@ class StoredBranch:
         return union_of_ranges((min(pair), max(pair)) for pair in pairs)
 
     @property
-    def special_point_errors(self) -> dict[float, float]:
+    def special_point_parameter_errors(self) -> dict[float, float]:
         """Absolute error of the parameter at each special point, by parameter value."""
         return {float(special.at): special.error for special in self.special_points}
 
@@ -91,10 +92,11 @@ class StoredBranch:
         return self.special_points[-1].reason not in EARLY_STOP_REASONS and bool((self.stability >= 0).all())
 
     def scaled_curves_near_hopf_points(self) -> list[tuple[Array, Array, NDArray[np.integer]]]:
-        """For each Hopf point at an end of the branch: (|at/at_H - 1|, y/|a|, stability) to the first fold.
+        """For each Hopf point at an end of the branch: (|p/p_H - 1|, y/|a|, stability) up to the first fold.
 
-        at_H, a: parameter and amplitude coefficient of the Hopf point. Hopf points with unknown or zero a are
-        skipped, and the vertex of the Hopf point is left out. Shapes (n,), (n,) and (n - 1,), n > 1.
+        p: followed parameter. p_H, a: p and amplitude coefficient of the Hopf point. Hopf points with unknown
+        or zero a are skipped, and the vertex of the Hopf point is left out. Shapes (n,), (n,) and (n - 1,), n
+        > 1.
         """
         curves = []
         for special, order in (
@@ -133,7 +135,7 @@ def stored_branch(v: dict[str, Array], parameter_name: str, number: int) -> Stor
     ]
     x, y, period = np.array(values, dtype=float).reshape(-1, 3).T
     errors = np.array([v[f"branch_{parameter_name}_error"][i] if is_cycle else 0.0 for is_cycle, i in order])
-    x = _parameter_between_special_points(
+    x = _parameter_clipped_at_special_points(
         x, errors * np.abs(x), np.array([not is_cycle for is_cycle, _ in order])
     )
     crossing = zip(v["unstable_multipliers"], v["multiplier"], v["multiplier_error"], strict=True)
@@ -147,10 +149,10 @@ def stored_branch(v: dict[str, Array], parameter_name: str, number: int) -> Stor
     return StoredBranch(x, y, period, stability_between_vertices(counts), is_cycle, points)
 
 
-def _parameter_between_special_points(x: Array, error: Array, is_special: NDArray[np.bool_]) -> Array:
+def _parameter_clipped_at_special_points(x: Array, error: Array, is_special: NDArray[np.bool_]) -> Array:
     """The parameter at the vertices of a branch, (n,); cycles are moved by at most twice their absolute error
-    into the range between the special points before and after them. is_special: mask of the special points,
-    (n,)."""
+    into the range between the special points before and after them. x, error: parameter at the vertices, and
+    its absolute error, (n,) each. is_special: mask of the special points, (n,)."""
     x = x.copy()
     for start, end in pairwise(np.flatnonzero(is_special)):
         interior = slice(start + 1, end)

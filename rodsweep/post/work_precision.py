@@ -18,7 +18,7 @@ GROUP_COLOURS = (BLUE, VERMILION, GREEN, "black", "0.55")
 """Colours of the groups of methods, in order of appearance."""
 METHOD_MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 """Markers that distinguish the methods within one group."""
-MIN_RATIO_FOR_DECADE_LABELS = 1e3
+MIN_TIME_RATIO_FOR_DECADE_LABELS = 1e3
 """If the longest time exceeds this multiple of the shortest time, only powers of ten have tick labels."""
 MIN_DRAWN_ERROR = 1e-17
 """Smaller relative errors are drawn at this value, because zero has no logarithm."""
@@ -40,7 +40,7 @@ def draw_work_precision(measurements: Table, xlabel: str, target: float | None, 
     cases, methods, groups, seconds, errors = (values[has_error] for values in columns.values())
     curve_looks = _plot_keywords_by_method(dict(zip(methods.tolist(), groups.tolist(), strict=True)))
     titles = list(dict.fromkeys(cases.tolist()))
-    is_wide = np.nanmax(seconds) > MIN_RATIO_FOR_DECADE_LABELS * np.nanmin(seconds)
+    is_wide = np.nanmax(seconds) > MIN_TIME_RATIO_FOR_DECADE_LABELS * np.nanmin(seconds)
     column_count = ceil(sqrt(len(titles)))
     row_count = ceil(len(titles) / column_count)
     with matplotlib.rc_context(FIGURE_STYLE):

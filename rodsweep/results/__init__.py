@@ -3,5 +3,5 @@
 Only this package imports h5py. The package does not use the solvers.
 """
 
-RESULT_ENDINGS = (".h5", ".hdf5", ".nc")
+RESULT_SUFFIXES = (".h5", ".hdf5", ".nc")
 """Allowed endings of the names of result files."""

@@ -16,7 +16,7 @@ Outcome = TypeVar("Outcome", bound=Any)
 
 
 FAILURE_EXCEPTIONS = (*PETSC_EXCEPTIONS, Unsolvable, ArithmeticError, MemoryError, np.linalg.LinAlgError)
-"""Exceptions that are treated as a failed solve; any other exception is a bug and ends the run."""
+"""Exceptions that are treated as a failed solve; any other exception is passed on."""
 
 
 def outcome_or_failure(
@@ -38,8 +38,8 @@ def outcome_or_failure(
 
 def cause_of(error: BaseException) -> str:
     """Last line of the message of `error`, or of the exception that caused `error`; PETSc writes the cause in
-    the last line. For a ZeroDivisionError or OverflowError, a sentence says that a number of the rod
-    overflows or underflows, and contains this line in brackets."""
+    the last line. For a ZeroDivisionError or OverflowError: a clause that a number of the rod overflows or
+    underflows, with this line in brackets."""
     cause = error.__cause__ or error
     message = (str(cause) or type(cause).__name__).splitlines()[-1]
     if isinstance(cause, ZeroDivisionError | OverflowError):

@@ -1,8 +1,8 @@
 """Compiled functions that only some runs call, compiled at the installation.
 
 The functions that every run calls are loaded by the functions `warm_up` of the solvers. Without this module,
-the first branch with a fold, the first spectra between which a rod loses its stability, and the first arm
-that varies along its length would wait up to 40 s for the compiler.
+three solves would wait up to 40 s for the compiler: the first branch with a fold, the first spectra between
+which a rod loses its stability, and the first arm that varies along its length.
 """
 
 import numpy as np
@@ -16,7 +16,7 @@ from ..model.material.rod_material import RodMaterial
 from ..model.rod import Rod
 from .changes.thresholds import ThresholdsRequest, solve_thresholds
 from .cycle.limit_cycle import solve_cycle
-from .cycle.reference_rod import REFERENCE_REQUEST
+from .cycle.rod_with_known_cycle import REFERENCE_REQUEST
 from .orbit.matrix.linearisation import parameter_derivatives, reduced_stage_residual_variations
 from .orbit.matrix.workspace import FactorStorage, NewtonWorkspace
 from .orbit.orbit import Orbit
@@ -40,7 +40,7 @@ SAMPLE_SEGMENTED_ARM = Rod(
 """An arm whose properties jump at its middle."""
 SAMPLE_ACCURACY = 1e-4
 """Accuracy of the spectra and thresholds of both arms."""
-SAMPLE_TIME_INTERVALS = 2
+SAMPLE_ORBIT_INTERVAL_COUNT = 2
 """Number of time intervals of the sample orbit: the smallest number for which an orbit has a mesh."""
 SAMPLE_COLLOCATION_STAGES = 3
 """Number of collocation stages per interval of the sample orbit; other numbers need no new compilation."""
@@ -73,10 +73,10 @@ def warm_up_uniform() -> None:
     )
     count_right_of_widest_gap(FollowedEigenvalues(w, w, np.zeros((1, 2)), np.zeros((1, 2), np.int64)), 0, 1)
     form = StressForm(SAMPLE_ROD, uniform_mesh(1, 4))
-    states = np.zeros((1 + SAMPLE_TIME_INTERVALS * SAMPLE_COLLOCATION_STAGES, form.unknown_count))
+    states = np.zeros((1 + SAMPLE_ORBIT_INTERVAL_COUNT * SAMPLE_COLLOCATION_STAGES, form.unknown_count))
     orbit = Orbit.from_states(form, REFLECTION, 1.0, states, SAMPLE_COLLOCATION_STAGES)
     memory = FactorStorage(
-        NewtonWorkspace(), SAMPLE_TIME_INTERVALS, SAMPLE_COLLOCATION_STAGES, form.unknown_count
+        NewtonWorkspace(), SAMPLE_ORBIT_INTERVAL_COUNT, SAMPLE_COLLOCATION_STAGES, form.unknown_count
     )
     variations = np.zeros((1, len(orbit.values) + 1))
     equations = orbit.orbit_equations

@@ -11,14 +11,14 @@ from .cost_estimate import CostEstimate, sampled_points_with_rod
 from .points.points import Points
 
 COSTLIER_IF_LARGER = frozenset({"k1", "F"})
-"""Parameters for which large values make branches of cycles expensive; for all other parameters, small
-values."""
+"""Parameters for which large values make branches of cycles expensive; for all other parameters, small values
+do."""
 BRANCH_SECONDS_PER_FORCE = 0.004
 """All branches of a rod take BRANCH_SECONDS_PER_FORCE F (accuracy/1e-7)^BRANCH_ACCURACY_EXPONENT (1 + F/(k2
 t))^BRANCH_FORCE_OVER_BENDING_EXPONENT/taper^2, in seconds. t: min(1, taper)^2. F: largest force on the
 branches, at most k1 t. Fourteen random rods (F up to 60 to 200, k2 from 12 to 9000, accuracies from 1e-4 to
 1e-9) took 0.3 to 21 s, all within a factor of three of the formula and most within two; some near F = k1 take
-four times as long. Branches of six cones, over F and over the taper, took 0.6 to 2 times as long as foreseen
+four times as long. Branches of six cones, over F and over the taper, took 0.6 to 2 times as long as estimated
 (0.2 to 11 s, tapers from 0.5 to 1.5)."""
 BRANCH_ACCURACY_EXPONENT = -0.17
 """Exponent of the accuracy in the formula of BRANCH_SECONDS_PER_FORCE."""
@@ -43,7 +43,7 @@ def branches_cost(
     """
     indices = sampled_points_with_rod(points)
     values: dict[str, Array | float] = points.parameter_values_of_points(indices) | {
-        # The costly end of the range stands for the whole branch, on which the steps there dominate.
+        # The costly end of the range stands for the whole branch, because the steps near this end dominate.
         parameter_name: limits[parameter_name in COSTLIER_IF_LARGER]
     }
     taper = np.asarray(values.get("taper", 1.0))

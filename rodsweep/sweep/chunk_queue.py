@@ -21,7 +21,7 @@ CHUNK_SECONDS_PER_RANK = 1e-3
 """Planned time of a chunk in a run with many ranks, in s per rank. The first rank answers a request in 50
 microseconds and so spends a twentieth of its time on answers."""
 MAX_CHUNK_TIME_OVER_PLANNED_TIME = 3.0
-"""Time after which a rank returns the unsolved items of a chunk to the queue, over the planned time."""
+"""Time after which a rank returns the unsolved items of a chunk, divided by the planned time of a chunk."""
 MAX_CHUNK_ITEMS = 1 << 16
 """Maximum number of items in a chunk."""
 MIN_QUEUED_ITEMS_PER_RANK_FOR_ADVANCE = 4
@@ -46,7 +46,7 @@ class RankReport:
     """Time spent since the last report, in s."""
     returned_items: IndexRange = NO_WORK_LEFT
     """Range of the items of the last chunk that the rank did not solve."""
-    stored_point_count: int = 0
+    newly_stored_point_count: int = 0
     """Number of points that the rank has stored in its journal since the last report."""
     is_request_in_advance: bool = False
     """Whether the rank requests the next chunk in advance, at the start of the current chunk."""
@@ -82,7 +82,7 @@ class ChunkQueue:
             # The first report of a rank belongs to no chunk.
             if self.outstanding[rank]:
                 self.outstanding[rank] -= 1
-            self.stored_points += report.stored_point_count
+            self.stored_points += report.newly_stored_point_count
             if report.finished_item_count:
                 self.seconds_per_item[rank] = report.seconds / report.finished_item_count
             start, end = report.returned_items
@@ -161,7 +161,7 @@ class DependentItemQueue(ChunkQueue):
     def add_report(self, rank: int, report: RankReport) -> None:
         """Adds the results in a rank's report; an item without a result can be chosen again."""
         with self.change:
-            self.stored_points += report.stored_point_count
+            self.stored_points += report.newly_stored_point_count
             self.results |= report.results
             # A new result may change the choice of all items, so it is made anew when a rank next asks.
             self._items_to_solve = None

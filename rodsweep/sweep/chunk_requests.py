@@ -39,7 +39,8 @@ LONGEST_CHUNK_POLL_SECONDS = 1e-2
 """Longest pause, in seconds, between two polls of a rank that waits for a chunk: an idle rank must not take
 processor time from solving ranks."""
 CHUNK_POLL_GROWTH = 1.1
-"""Ratio of two successive pauses of a waiting rank. Near 1, it hardly prolongs a wait of a millisecond."""
+"""Ratio of two successive pauses of a waiting rank. A ratio near 1 hardly prolongs a wait of a
+millisecond."""
 IDLE_FIRST_RANK_WAIT_SECONDS = 0.05
 """Seconds for which an idle first rank waits for the queue to change before it polls for MPI messages."""
 
@@ -50,8 +51,8 @@ class ChunkServer:
     def __init__(
         self, ranks: Ranks, queue: ChunkQueue, stop: StopRequest, show_position: Callable[[str, float], None]
     ):
-        """show_position: function (text on the progress of a long point, sum of the fractions done of all
-        unfinished points) that displays the progress."""
+        """show_position: function (text on the progress of a long point, sum of the completed fractions of
+        all unfinished points) that displays the progress."""
         self.ranks = ranks
         self.queue = queue
         self.stop = stop
@@ -105,7 +106,7 @@ class ChunkServer:
         self.show_position(position.text, self._sum_of_done_fractions())
 
     def _sum_of_done_fractions(self) -> float:
-        """Sum of the fractions done of all unfinished points on all ranks."""
+        """Sum of the completed fractions of all unfinished points on all ranks."""
         # A copy, because the thread may change the dictionary meanwhile.
         return sum(position.completed_fraction or 0.0 for position in list(self.positions.values()))
 

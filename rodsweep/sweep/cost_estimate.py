@@ -20,7 +20,7 @@ from .points.points import Points
 MAX_SAMPLED_POINTS = 200
 """Largest number of points whose meshes are computed for an estimate."""
 SPECTRUM_FIXED_MS = 0.03
-"""Measured time of the solve of a spectrum that does not depend on the number of unknowns, in ms."""
+"""Part of the measured solve time of a spectrum that is independent of the number of unknowns, in ms."""
 SPECTRUM_MS_PER_UNKNOWN = 2.2e-3
 """Measured time of the orthogonalisation in the solve of a spectrum, in ms per unknown."""
 SPECTRUM_MS_PER_CUBED_UNKNOWN = 1.5e-7
@@ -38,8 +38,8 @@ ARM_MS_PER_SQUARED_UNSTABLE_MODE = 0.08
 modes, in ms: within a factor of two for 25 arms with up to 62 unstable modes; 82 and 110 modes took 1.3 and
 2.8 times as long."""
 ARM_CODE_LOADING_SECONDS = 0.35
-"""Time in which a rank loads the compiled code of arms that are not uniform, with its first point, in s: 0.24
-to 0.43 for the first solve of six tasks beyond the time of the second."""
+"""Time in which a rank loads the compiled code of arms that are not uniform, with its first point, in s: in
+six tasks the first solve took 0.24 to 0.43 s longer than the second."""
 MAX_EXTRA_MODES_OF_FOLLOWED_ARM = 9
 """Eigenvalues of an arm are followed only if its number of unstable modes exceeds the number of requested
 modes by at most this number."""
@@ -51,25 +51,25 @@ FOLLOWED_ARM_POINT_MS = 0.15
 """Time per point, including the first point, of a group of arms that are not uniform, in ms: median of 30."""
 ROD_MS_PER_SQUARED_UNSTABLE_MODE = 0.02
 """Time of a spectrum of a uniform rod with N unstable modes, divided by N^2 (1 + (N/
-QUARTIC_TIME_MODES)^2), in ms: 0.014 to 0.025 for eight soft rods with 64 to 1000 unstable modes, up to
-0.1 for rods with ten."""
-QUARTIC_TIME_MODES = 500.0
+MIN_UNSTABLE_MODES_OF_QUARTIC_TIME)^2), in ms: 0.014 to 0.025 for eight soft rods with 64 to 1000 unstable
+modes, up to 0.1 for rods with ten."""
+MIN_UNSTABLE_MODES_OF_QUARTIC_TIME = 500.0
 """Number of unstable modes at which the time of a spectrum begins to grow with their fourth power."""
 PULLED_MS_PER_LAYER_WAVE_NUMBER = 0.4
 """Time of a spectrum of a pulled rod, divided by the wave number of the layers at its ends, in ms L: 0.2 to
-0.8 for nine rods under pulls of 1e3 to 1e6, some unresolved; 0.02 for a rod without compliances under 1e3."""
-MIN_WAVE_NUMBER_OF_LAYERS = 25.0
+0.8 for nine rods under pulls of 1e3 to 1e6, some unresolved; 0.02 for a rod without compliances at 1e3."""
+MAX_RESOLVED_LAYER_WAVE_NUMBER = 25.0
 """Wave number, in 1/L, below which the first mesh of a pulled rod resolves the layers at its ends."""
 BEYOND_SHEAR_STIFFNESS_TEXT = "rods under a pull beyond the shear stiffness"
 """Kind of rods whose spectra are not estimated reliably: of 13 rods under pulls F < -k2 nu nine took 4 to 60
 times as long as estimated, one 800 times; the time grows as gamma3 decreases."""
-MAX_SQUARED_WAVE_NUMBER = 1e8
-"""Squared wave number, in 1/L^2, above which a spectrum takes no longer: no allowed mesh resolves it."""
+MAX_RESOLVED_SQUARED_WAVE_NUMBER = 1e8
+"""Squared wave number, in 1/L^2, above which a spectrum takes no extra time: no allowed mesh resolves it."""
 TWO_MESHES_TIME_OVER_ROOTS_TIME = 8.0
 """Time of a spectrum by Krylov-Schur on two meshes, divided by the time by roots of D: mean over 800 rods."""
 EXTRA_TWO_MESHES_TIME_OVER_ROOTS_TIME = 0.05
 """Additional time of soft or pulled rods by Krylov-Schur on two meshes, which finds only the requested modes,
-divided by the additional time by roots of D; three rods."""
+divided by the additional time by roots of D; measured for three rods."""
 FINER_MESH_UNKNOWNS_RATIO = 4 / 3
 """Ratio of the numbers of unknowns of the second and the first mesh, in a spectrum by Krylov-Schur."""
 MODES_MS_PER_SQUARED_MODE_COUNT = 0.4
@@ -80,12 +80,12 @@ PULLED_MODES_MS_PER_SQUARED_LAYER_WAVE_NUMBER = 0.012
 the squared wave number of the layers, in ms L^2: 0.009 to 0.022 for nine rods with wave numbers from 27 to
 714, 0.004 and 0.008 for two cones."""
 MAX_RESOLVED_WAVE_NUMBER = 1000.0
-"""Wave number of layers, in 1/L, above which modes take no longer: already the spectrum is not resolved."""
+"""Wave number of layers, in 1/L, above which modes take no extra time: not even the spectrum is resolved."""
 TRANSIENT_GROWTH_MS = 55.0
-"""Time of the transient growth of one rod, in ms: mean over the 24 rods, 52 to 75 ms with 2 to 12 modes."""
+"""Time of the transient growth of one rod, in ms: mean over 24 rods, 52 to 75 ms with 2 to 12 modes."""
 MEMORY_PER_UNKNOWN = 40_000
 """Memory of a rank per unknown of its largest mesh, in bytes."""
-BASE_MEMORY = 200_000_000
+BASE_MEMORY_BYTES = 200_000_000
 """Memory of a rank without any mesh, in bytes."""
 
 
@@ -95,7 +95,7 @@ class CostEstimate:
 
     seconds: float
     """Time of the whole sweep on one rank, in s."""
-    memory_bytes: int = BASE_MEMORY
+    memory_bytes: int = BASE_MEMORY_BYTES
     """Memory of a rank, in bytes."""
     unknown_count_range: tuple[int, int] | None = None
     """Smallest and largest number of unknowns of the sampled points' meshes; None if not estimated."""
@@ -148,7 +148,7 @@ def followed_spectra_cost(
     are_alone = unstable > mode_count + MAX_EXTRA_MODES_OF_FOLLOWED_ARM
     extra_ms = ARM_MS_PER_SQUARED_UNSTABLE_MODE * unstable**2 * are_alone
     point_ms += float(extra_ms.mean()) if rods else 0.0
-    # Groups shorter than the cost of their first point would make following look dearer than it can be.
+    # The first points of short groups would make following seem slower than solving every point alone.
     return replace(alone, seconds=alone.seconds * min(1.0, ratio) + points.count * 1e-3 * point_ms)
 
 
@@ -157,7 +157,7 @@ def two_meshes_cost(points: Points, mode_count: int, accuracy: float) -> CostEst
     eigenvalues. accuracy: relative accuracy."""
     one_mesh = spectra_cost(points, mode_count, accuracy, certify=False)
     rods = [points.rod(int(index)) for index in sampled_points_with_rod(points)]
-    extra = points.count * 1e-3 * float(np.mean([_soft_or_pulled_rod_ms(rod) for rod in rods] or [0.0]))
+    extra = points.count * 1e-3 * float(np.mean([_extra_soft_or_pulled_rod_ms(rod) for rod in rods] or [0.0]))
     # The part for soft and pulled rods is taken out of the factor, as it has a factor of its own.
     seconds = TWO_MESHES_TIME_OVER_ROOTS_TIME * (one_mesh.seconds - extra)
     seconds += EXTRA_TWO_MESHES_TIME_OVER_ROOTS_TIME * extra
@@ -171,7 +171,7 @@ def spectra_cost(points: Points, mode_count: int, accuracy: float, certify: bool
     none of these points has a rod. mode_count: number of eigenvalues. accuracy: relative accuracy. certify:
     whether spectra are certified."""
     rods = [points.rod(int(index)) for index in sampled_points_with_rod(points)]
-    counts = [_unknown_count(rod, mode_count, accuracy) for rod in rods]
+    counts = [_first_mesh_unknown_count(rod, mode_count, accuracy) for rod in rods]
     if not counts:  # no rod covers any point of the sample
         return CostEstimate(0.0)
     arm_fraction = sum(not rod.is_uniform_and_linear for rod in rods) / len(rods)
@@ -182,8 +182,8 @@ def spectra_cost(points: Points, mode_count: int, accuracy: float, certify: bool
     point_ms += CERTIFICATE_MS if certify else 0
     unstable = _unstable_counts_of_arms(rods)
     point_ms += arm_fraction * CERTIFIED_ARM_SPECTRUM_MS + ARM_MS_PER_SQUARED_UNSTABLE_MODE * unstable**2
-    point_ms += np.array([_soft_or_pulled_rod_ms(rod) for rod in rods])
-    memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
+    point_ms += np.array([_extra_soft_or_pulled_rod_ms(rod) for rod in rods])
+    memory = BASE_MEMORY_BYTES + int(n.max()) * MEMORY_PER_UNKNOWN
     # Counted before the limit is applied, so that the user learns of rods that will not be solved.
     too_large = int((np.array(counts) > RESOLUTION_SETTINGS.max_unknowns).sum())
     doubt = BEYOND_SHEAR_STIFFNESS_TEXT if any(map(_is_beyond_shear_stiffness, rods)) else ""
@@ -192,23 +192,27 @@ def spectra_cost(points: Points, mode_count: int, accuracy: float, certify: bool
 
 
 def _unstable_counts_of_arms(rods: list[Rod]) -> NDArray[np.float64]:
-    """Expected unstable modes of each rod, (rods,), 0 for uniform linear rods; no mesh has more unknowns."""
+    """Expected unstable modes of each rod, (rods,), at most a mesh's unknowns; 0 for uniform linear rods."""
     counts = [0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods]
     return np.minimum(counts, RESOLUTION_SETTINGS.max_unknowns)
 
 
-def _soft_or_pulled_rod_ms(rod: Rod) -> float:
+def _extra_soft_or_pulled_rod_ms(rod: Rod) -> float:
     """Additional time of the spectrum of a uniform rod with many unstable modes, or of any rod with thin
     layers under a strong pull, in ms; 0 for all other rods."""
     squared_wave_number = _squared_wave_number(rod)
     if squared_wave_number > 0:
-        count = math.sqrt(min(squared_wave_number, MAX_SQUARED_WAVE_NUMBER)) / math.pi
-        return ROD_MS_PER_SQUARED_UNSTABLE_MODE * count**2 * (1 + (count / QUARTIC_TIME_MODES) ** 2)
+        count = math.sqrt(min(squared_wave_number, MAX_RESOLVED_SQUARED_WAVE_NUMBER)) / math.pi
+        return (
+            ROD_MS_PER_SQUARED_UNSTABLE_MODE
+            * count**2
+            * (1 + (count / MIN_UNSTABLE_MODES_OF_QUARTIC_TIME) ** 2)
+        )
     return PULLED_MS_PER_LAYER_WAVE_NUMBER * _layer_wave_number(squared_wave_number)
 
 
 def _squared_wave_number(rod: Rod) -> float:
-    """Squared wave number in 1/L^2, of the shortest growing wave of a uniform rod under a push; negative for
+    """Squared wave number, in 1/L^2, of the shortest growing wave of a uniform rod under a push; negative for
     the layers at the ends of any rod under a pull."""
     if rod.is_uniform_and_linear:
         return rod.F * rod.g
@@ -220,8 +224,8 @@ def _squared_wave_number(rod: Rod) -> float:
 def _layer_wave_number(squared_wave_number: float) -> float:
     """Wave number of the layers at the ends of a pulled rod, in 1/L; 0 where its first mesh resolves them.
     squared_wave_number: as from `_squared_wave_number`."""
-    wave_number = math.sqrt(min(max(-squared_wave_number, 0.0), MAX_SQUARED_WAVE_NUMBER))
-    return wave_number if wave_number > MIN_WAVE_NUMBER_OF_LAYERS else 0.0
+    wave_number = math.sqrt(min(max(-squared_wave_number, 0.0), MAX_RESOLVED_SQUARED_WAVE_NUMBER))
+    return wave_number if wave_number > MAX_RESOLVED_LAYER_WAVE_NUMBER else 0.0
 
 
 def _is_beyond_shear_stiffness(rod: Rod) -> bool:
@@ -230,7 +234,7 @@ def _is_beyond_shear_stiffness(rod: Rod) -> bool:
     return rod.F < 0 and g < 0
 
 
-def _unknown_count(rod: Rod, mode_count: int, accuracy: float) -> int:
+def _first_mesh_unknown_count(rod: Rod, mode_count: int, accuracy: float) -> int:
     """Number of unknowns of the first mesh on which `rod` is solved for `mode_count` modes to the relative
     accuracy `accuracy`."""
     if not rod.is_uniform_and_linear:

@@ -35,8 +35,8 @@ class ProgressSink(Protocol):
         """Shows `finished_count`, the number of points that all ranks have finished."""
 
     def show_position(self, text: str, fraction_sum: float) -> None:
-        """Shows the text `text` on the progress of a long point. fraction_sum: sum of the fractions done of
-        all unfinished points."""
+        """Shows the text `text` on the progress of a long point. fraction_sum: sum of the completed fractions
+        of all unfinished points."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +122,7 @@ class _RankLoop:
                 finished_item_count=next_item - chunk[0],
                 seconds=chunk_seconds,
                 returned_items=(next_item, chunk[1]),
-                stored_point_count=self.solved_points - points_before,
+                newly_stored_point_count=self.solved_points - points_before,
                 stop_signal=self.stop.name,
                 results=self.callbacks.results_since_last_call(),
             )

@@ -22,7 +22,7 @@ BAR_SECONDS = 0.1
 """Seconds between two updates of a progress bar."""
 
 
-def on_terminal() -> bool:
+def is_stderr_a_terminal() -> bool:
     """Whether standard error is a terminal; under an MPI launcher, the launcher's standard error counts
     too."""
     if sys.stderr.isatty():
@@ -69,7 +69,7 @@ class ProgressReporter:
         self.finished_count = 0
         self.fraction_sum = 0.0
         self.position_text = ""
-        shows_bar = on_terminal() if is_bar is None else is_bar
+        shows_bar = is_stderr_a_terminal() if is_bar is None else is_bar
         self.bar = _progress_bar(title) if shows_bar else None
         if self.bar is not None:
             self.task = self.bar.add_task(title, total=total, count="", rate="", left="", where="")
@@ -88,7 +88,7 @@ class ProgressReporter:
 
     def show_position(self, text: str, fraction_sum: float = 0.0) -> None:
         """Shows the text `text` on the progress of a long point, if an update is due. fraction_sum: sum of
-        the fractions done of all unfinished points."""
+        the completed fractions of all unfinished points."""
         self.fraction_sum = fraction_sum
         self.position_text = text
         self._show_if_due()

@@ -11,9 +11,9 @@ from ..errors import BUG_EXIT_STATUS, EnvironmentIncomplete, UserError, import_f
 
 T = TypeVar("T")
 S = TypeVar("S")
-SHORTEST_PAUSE = 1e-4
+SHORTEST_BARRIER_PAUSE_SECONDS = 1e-4
 """First pause, in seconds, between two tests of a barrier; each further pause is twice as long."""
-LONGEST_PAUSE = 1e-2
+LONGEST_BARRIER_PAUSE_SECONDS = 1e-2
 """Longest pause, in seconds, between two tests of a barrier."""
 
 
@@ -60,10 +60,10 @@ class Ranks:
     def wait_for_all(self) -> None:
         """Barrier over all ranks that sleeps between tests, so that working ranks keep the processor."""
         request = self.comm.Ibarrier()
-        wait_seconds = SHORTEST_PAUSE
+        wait_seconds = SHORTEST_BARRIER_PAUSE_SECONDS
         while not request.Test():
             time.sleep(wait_seconds)
-            wait_seconds = min(2 * wait_seconds, LONGEST_PAUSE)
+            wait_seconds = min(2 * wait_seconds, LONGEST_BARRIER_PAUSE_SECONDS)
 
     def require_on_all_ranks(self, work: Callable[[], object]) -> None:
         """Calls `work` on every rank. If any rank raises a `UserError`, all ranks raise this refusal."""

@@ -3,7 +3,7 @@
 Points differ in cost: the first point of a chain has no initial guess, later points start from a neighbour, a
 few points are hard. The time per point is therefore measured over the latest half of the finished points, and
 never includes the first points. The reported remaining time follows the estimate slowly, with a time constant
-proportional to the elapsed time, and faster toward the end. The fractions done of unfinished points are
+proportional to the elapsed time, and faster toward the end. The completed fractions of unfinished points are
 included. The module reads no clock: the caller passes all times.
 """
 
@@ -13,8 +13,8 @@ SKIPPED_POINT_FRACTION_FOR_PACE = 0.5
 """The time per point is measured after this fraction of the points that are finished now."""
 MIN_POINTS_FOR_PACE = 2
 """Minimum number of points finished after the first record; with fewer points there is no time per point."""
-MIN_UNFINISHED_FRACTION_SUM = 0.1
-"""Minimum sum of the fractions done of unfinished points, for an estimate without finished points. For
+MIN_FRACTION_SUM_OF_UNFINISHED = 0.1
+"""Minimum sum of the completed fractions of unfinished points, for an estimate without finished points. For
 smaller sums, the time of starting up dominates."""
 SMOOTHING_TIME_RATIO = 0.25
 """Time constant of the reported remaining time, divided by the smaller of elapsed and remaining time."""
@@ -23,7 +23,8 @@ POINT_COUNT_RATIO_OF_SUCCESSIVE_RECORDS = 1.02
 
 
 class RemainingTimeEstimator:
-    """Estimator of the remaining time of a sweep of `total` points; all times are in s since the start."""
+    """Estimator of the remaining time of a sweep of `point_count` points; all times are in s since the
+    start."""
 
     def __init__(self, point_count: int):
         self.total = point_count
@@ -35,8 +36,8 @@ class RemainingTimeEstimator:
     def remaining_seconds(self, finished_count: int, now: float, fraction_sum: float = 0.0) -> float | None:
         """Remaining time, in s, when `finished_count` points are finished at the time `now`, smoothed over
         the calls; None if too little work is done for an estimate. now: in s since the start of the sweep.
-        fraction_sum: sum of the fractions done of unfinished points."""
-        # Without this case the smoothed time would still show a rest at the end.
+        fraction_sum: sum of the completed fractions of unfinished points."""
+        # Without this case the smoothed time would not be 0 at the end.
         if finished_count == self.total:
             return 0.0
         if finished_count and (not self.records or finished_count > self.records[-1][0]):
@@ -59,7 +60,8 @@ class RemainingTimeEstimator:
         return self.reported[1]
 
     def _store_record(self, finished_count: int, now: float) -> None:
-        """Stores the record (finished, now); thins earlier records to about 35 per doubling of the points."""
+        """Stores the record (`finished_count`, `now`); thins earlier records to about 35 per doubling of the
+        points."""
         if (
             len(self.records) > 2
             and self.records[-1][0] < POINT_COUNT_RATIO_OF_SUCCESSIVE_RECORDS * self.records[-2][0]
@@ -71,15 +73,17 @@ class RemainingTimeEstimator:
     def _seconds_per_point(self, finished_count: int, now: float, fraction_sum: float) -> float | None:
         """Time per point in s: the larger of the time over the latest finished points and the time that
         includes the wait since the latest record. finished_count: number of finished points. now: in s since
-        the start of the sweep. fraction_sum: sum of the fractions done of unfinished points.
+        the start of the sweep. fraction_sum: sum of the completed fractions of unfinished points.
 
-        Before MIN_POINTS_FOR_PACE points are finished, the time follows from the fractions done of unfinished
-        points; None if their sum is below MIN_UNFINISHED_FRACTION_SUM.
+        Before MIN_POINTS_FOR_PACE points are finished, the time follows from the completed fractions of
+        unfinished points; None if their sum is below MIN_FRACTION_SUM_OF_UNFINISHED.
         """
         if not self.records or finished_count < self.records[0][0] + MIN_POINTS_FOR_PACE:
-            # Before two points are finished only the fractions of long points tell the pace.
+            # Before two points are finished only the fractions of long points show the pace.
             return (
-                now / (finished_count + fraction_sum) if fraction_sum >= MIN_UNFINISHED_FRACTION_SUM else None
+                now / (finished_count + fraction_sum)
+                if fraction_sum >= MIN_FRACTION_SUM_OF_UNFINISHED
+                else None
             )
         earlier_records = (
             record

@@ -24,7 +24,8 @@ largest force of the search. The number of exchanges grows with F^2/k2: 30 rods 
 to 3 times this time, for F up to 200."""
 SOFT_ARM_MS_PER_F4_OVER_K2_SQUARED = 4e-4
 """Time to search a soft arm that is not uniform for crossings along F, divided by (F^2/k2)^2, in ms. F:
-largest force; k2: of the thinnest section. Eight cones with F^2/k2 from 800 to 16000: 0.3 to 2 times this."""
+largest force; k2: of the thinnest section. Eight cones with F^2/k2 from 800 to 16000 took 0.3 to 2 times this
+time."""
 ARM_SEARCH_MS = 200.0
 """Time to search an arm that is not uniform for crossings along F, in ms: mean over 64 random arms, of which
 half take 40 ms and a few soft arms 2000 ms."""
@@ -50,7 +51,7 @@ def searches_cost(search_count: int, certify: bool, is_varying: bool) -> CostEst
     return CostEstimate(search_count * 1e-3 * (ARM_SEARCH_MS if is_varying else uniform_rod_ms))
 
 
-def soft_searches_seconds(points: Points, F_max: float, is_varying: bool) -> float:
+def extra_seconds_of_soft_searches(points: Points, F_max: float, is_varying: bool) -> float:
     """Time of all searches along F in `points` beyond the time of stiff rods, in s: exchanges and crossings
     become many where F^2/k2 is large. F_max: largest force. is_varying: whether any arm is not uniform."""
     indices = sampled_points_with_rod(points)
@@ -75,7 +76,9 @@ def thresholds_cost(points: Points, F_max: float, certify: bool, is_varying: boo
     """Estimated cost of the lists of thresholds of all rods in `points` for forces up to `F_max`. certify:
     whether each list is certified. is_varying: whether any arm is not uniform."""
     searches = searches_cost(points.count, certify, is_varying)
-    return replace(searches, seconds=searches.seconds + soft_searches_seconds(points, F_max, is_varying))
+    return replace(
+        searches, seconds=searches.seconds + extra_seconds_of_soft_searches(points, F_max, is_varying)
+    )
 
 
 def diagram_cost(
@@ -94,7 +97,9 @@ def criticality_cost(points: Points, F_max: float, certify: bool, is_varying: bo
     certify: whether each search is certified. is_varying: whether any rod is not uniform."""
     search_ms = HOPF_SEARCH_MS + (HOPF_CERTIFICATE_MS if certify else 0)
     rod_ms = HOPF_NORMAL_FORMS_MS_PER_ROD + (ARM_SEARCH_MS if is_varying else search_ms)
-    return CostEstimate(points.count * 1e-3 * rod_ms + soft_searches_seconds(points, F_max, is_varying))
+    return CostEstimate(
+        points.count * 1e-3 * rod_ms + extra_seconds_of_soft_searches(points, F_max, is_varying)
+    )
 
 
 MAX_SAMPLED_ROWS = 20
@@ -103,7 +108,8 @@ COVERING_MS_PER_BOX = 0.11
 """Time to search one uniform rod under pulls, divided by the number of boxes from which the covering starts,
 in ms: 0.07 to 0.15 for twelve rods with 98 to 2900 boxes."""
 EXTRA_MS_FOR_PULL_BEYOND_SHEAR_STIFFNESS = 100.0
-"""Further time to search one rod from a pull beyond its shear stiffness, in ms: 110 for six, k2 = 100."""
+"""Further time to search one rod from a pull beyond its shear stiffness, in ms: 110 ms were measured for six
+rods with k2 = 100."""
 ARM_MS_PER_LARGEST_PULL = 0.6
 """Time to search an arm that is not uniform under pulls, divided by the largest pull in k3/L^2, in ms: 0.5 to
 0.7 for a cone under pulls of 100 and 1000."""
@@ -114,7 +120,7 @@ UNDERESTIMATED_ROWS_TEXT = "rows that begin at a pull beyond the shear stiffness
 times as long as a rod under half or twice the pull."""
 
 
-def pulled_rows_seconds(rods: Sequence[Rod], F_values: Array, row_count: int) -> tuple[float, str]:
+def pulled_rows_seconds_and_doubt(rods: Sequence[Rod], F_values: Array, row_count: int) -> tuple[float, str]:
     """Returns (time in s to search all rows below F = 0, underestimated rows). underestimated rows: kind of
     rows whose time may be many times as long; empty if there are none. rods: rods of evenly spaced rows, with
     any F. F_values: increasing forces along a row, (n,). row_count: number of rows."""
@@ -123,7 +129,7 @@ def pulled_rows_seconds(rods: Sequence[Rod], F_values: Array, row_count: int) ->
         return 0.0, ""
     # The diagram itself begins a row at the first pull with a bound on its eigenvalues.
     starts = [_largest_searchable_pull(rod, pulls) for rod in rods]
-    seconds_of_rows = [_row_seconds(rod, start) for rod, start in zip(rods, starts, strict=True)]
+    seconds_of_rows = [_pulled_row_seconds(rod, start) for rod, start in zip(rods, starts, strict=True)]
     # Beyond the shear stiffness g = nu + F c2 is negative somewhere along the arm.
     arms = (sampled_arm(rod.with_values(F=start)) for rod, start in zip(rods, starts, strict=True))
     is_beyond_shear_stiffness = any(float(np.min(arm.local_coefficients.g)) < 0 for arm in arms)
@@ -148,7 +154,7 @@ def _largest_searchable_pull(rod: Rod, pulls: Array) -> float:
     return float(pulls[low]) if low < len(pulls) else 0.0
 
 
-def _row_seconds(rod: Rod, start_pull: float) -> float:
+def _pulled_row_seconds(rod: Rod, start_pull: float) -> float:
     """Time to search one row from the pull `start_pull` to F = 0, in s."""
     if not rod.is_uniform_and_linear:
         # No search lasts longer, because it gives up on rods that no mesh resolves.
@@ -163,7 +169,7 @@ def _row_seconds(rod: Rod, start_pull: float) -> float:
 
 
 def _boxes_from_pull_to_zero(rod: Rod, pull: float) -> Array | None:
-    """Boxes of the covering from `pull` to F = 0; None if no a-priori bound applies."""
+    """Boxes of the covering from `pull` to F = 0; None unless `pull` < 0 and an a-priori bound applies."""
     # Imported for rows under pulls only: these modules load the compiler.
     from ..determinant.certificate.first_crossing_boxes import first_crossing_boxes
     from ..determinant.parameter_path import ParameterPath

@@ -52,7 +52,8 @@ class StopRequest:
         return time.monotonic() - self._since >= GRACE_SECONDS
 
     def listen_for_signals(self) -> None:
-        """Installs handlers, so that stop signals set this request, not end the process; main thread only."""
+        """Installs handlers, so that stop signals set this request instead of ending the process; main thread
+        only."""
         for signal_number in STOP_SIGNALS:
             signal.signal(signal_number, self._record_signal_name)
 

@@ -13,7 +13,7 @@ from ..discretization.elements.resolution import mesh_accuracy
 from ..model.rod import Rod
 from ..results.layouts.variables import FilledVariable
 from ..solve.changes.spectrum_samples import SPECTRUM_SAMPLE_SETTINGS
-from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
+from ..sweep.finest_initial_mesh import finest_initial_mesh, spectrum_mesh
 from .check_rows import arms_line, stretch_shear_and_drag_rows, varying_arm_and_law_rows
 from .hopf.thresholds_along_force import force_threshold_variables
 from .protocol import CheckRow, Task
@@ -26,7 +26,7 @@ class CertifiedTask(Task):
 
     uncertified_risk: ClassVar[str]
     """Consequence of a missing certificate, as `check` prints it."""
-    mode_count_location: ClassVar[str] = ""
+    modes_counted_per: ClassVar[str] = ""
     """Rods at which the certificate counts modes: "point" for every point, "line" for some rods on each
     line."""
     never_modelled_effects: ClassVar[tuple[str, str]] = (
@@ -36,17 +36,17 @@ class CertifiedTask(Task):
     """(effects that the task never models, reason), as `check` prints them."""
 
     @abstractmethod
-    def requested_result_rows(self) -> list[CheckRow]:
+    def rows_on_requested_results(self) -> list[CheckRow]:
         """Rows of `check` on the results that the task's options request."""
 
     @property
-    def parameter_values(self) -> dict[str, np.ndarray]:
+    def parameter_values_with_searches(self) -> dict[str, np.ndarray]:
         """All values of each parameter at points, in searches and on lines, by name of the parameter, in
         arrays of any shape."""
         return self.points.parameter_values_of_rods | self.searched_range_ends() | self.coordinates()
 
     def arms_line(self) -> str:
-        return arms_line(self.config, self.parameter_values, self.finest_initial_mesh)
+        return arms_line(self.config, self.parameter_values_with_searches, self.finest_initial_mesh)
 
     def finest_initial_mesh(self) -> Elements | None:
         """The finest of the initial meshes of all points; None if the rod model applies to no point.
@@ -59,7 +59,7 @@ class CertifiedTask(Task):
         def mesh_of(rod: Rod) -> Elements:
             return spectrum_mesh(rod, SPECTRUM_SAMPLE_SETTINGS.min_computed_modes, accuracy)
 
-        return largest_first_mesh(self.points, mesh_of, self.searched_range_ends())
+        return finest_initial_mesh(self.points, mesh_of, self.searched_range_ends())
 
     def searched_range_ends(self) -> dict[str, np.ndarray]:
         """Ends of the searched range, (1,) or (2,), by name of the parameter: the largest F of a search along
@@ -67,16 +67,16 @@ class CertifiedTask(Task):
         options = getattr(self.config, self.config.task)
         return {"F": np.array([options.F_max])} if hasattr(options, "F_max") else {}
 
-    def certificate(self) -> tuple[bool, str]:
+    def has_certificate_and_reason(self) -> tuple[bool, str]:
         """Returns (whether the run proves completeness, method of the proof or reason why there is no
         proof)."""
         task = self.config.task
         if not getattr(self.config, task).certify:
             return False, f"{task}.certify: false; {self.uncertified_risk}"
         proof = "winding number of D"
-        if self.mode_count_location == "line" and not self.config.is_uniform_and_linear:
+        if self.modes_counted_per == "line" and not self.config.is_uniform_and_linear:
             proof += " at some rods, with some bounds estimated; between them slopes of the eigenvalues"
-        if self.mode_count_location == "point" and self._has_varying_arm:
+        if self.modes_counted_per == "point" and self._has_varying_arm:
             proof += ", with some bounds estimated"
         return True, proof
 
@@ -87,16 +87,16 @@ class CertifiedTask(Task):
         tapers = self.points.columns_by_name.get("taper", np.ones(1))
         return self.config.rod_material.profile is not None or bool((tapers != 1).any())
 
-    def check_rows(self) -> list[CheckRow]:
+    def rows_of_check(self) -> list[CheckRow]:
         """Rows of the table of modelled and neglected effects, with a row on the certificate."""
         quantity, reason = self.never_modelled_effects
-        values = self.parameter_values
+        values = self.parameter_values_with_searches
         rows = [
             *stretch_shear_and_drag_rows(values),
             *varying_arm_and_law_rows(self.config, values),
-            *self.requested_result_rows(),
+            *self.rows_on_requested_results(),
         ]
-        return [*rows, ("certificate", *self.certificate()), (quantity, False, reason)]
+        return [*rows, ("certificate", *self.has_certificate_and_reason()), (quantity, False, reason)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +105,7 @@ class ModesOfPointsTask(CertifiedTask):
 
     uncertified_risk: ClassVar[str] = "modes may be missed"
     """Consequence of a missing certificate, as `check` prints it."""
-    mode_count_location: ClassVar[str] = "point"
+    modes_counted_per: ClassVar[str] = "point"
     """The certificate counts the modes of the rod of every point."""
 
     def variables_from_points(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:

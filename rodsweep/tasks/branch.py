@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..config.task.branch import BranchConfig
-from ..results.layouts.branch import branch_cycle_variables, special_variables
+from ..results.layouts.branch import branch_cycle_variables, special_point_variables
 from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.branch_cost import branches_cost
 from ..sweep.cost_estimate import CostEstimate
@@ -29,7 +29,7 @@ class BranchTask(HopfPointTask):
     config: BranchConfig
     """The config, with the section `branch`."""
 
-    def check_headline(self) -> str:
+    def headline_of_check(self) -> str:
         options = self.config.branch
         parameter = options.along
         crushing_text = search_end_below_crushing_clause(self.config) * (options.along == "F")
@@ -38,7 +38,7 @@ class BranchTask(HopfPointTask):
             self.points, f"followed in {parameter} {range_text}{crushing_text}"
         )
 
-    def requested_result_rows(self) -> list[CheckRow]:
+    def rows_on_requested_results(self) -> list[CheckRow]:
         options = self.config.branch
         lengths_text = f"{options.cycles} cycles and {options.special} special points"
         limit_sentence = f"at most {lengths_text} of a rod are stored"
@@ -72,7 +72,7 @@ class BranchTask(HopfPointTask):
         request = BranchRequest(**options.model_dump(), accuracy=self.config.accuracy)
         lengths = options.along, options.cycles, options.special
         return Solver(
-            statuses=tuple(BranchStatus),
+            possible_statuses=tuple(BranchStatus),
             warm_up=warm_up,
             solve=lambda index: solve_branches(self.points.rod(index), request, workspace),
             file_values_of_outcome=lambda index, result: branch_values(result, *lengths),
@@ -84,9 +84,12 @@ def branch_values(
 ) -> dict[str, Any]:
     """Variables of the file for all branches of a rod.
 
-    point_count: length of the list of cycles. special_count: length of the list of special points.
+    parameter_name: parameter along the branches. point_count: length of the list of cycles. special_count:
+    length of the list of special points.
     """
-    numbered = [(number, point) for number, curve in enumerate(result.curves, 1) for point in curve.points]
+    numbered = [
+        (number, point) for number, curve in enumerate(result.curves, 1) for point in curve.stored_cycles
+    ]
     cycles = [_cycle_values(point, parameter_name) | {"branch": number} for number, point in numbered]
     crossing_by_value = {crossing.value: crossing for crossing in result.crossings}
     second_branches = second_branch_by_symmetry_breaking(result.curves)
@@ -100,7 +103,7 @@ def branch_values(
                 "special_meets": second_branches.get((number, index), -1),
             }
             specials.append(_special_point_values(special_point, first_cycle_index, crossing) | others_here)
-        first_cycle_index += len(curve.points)
+        first_cycle_index += len(curve.stored_cycles)
     is_complete = result.status.name != "failed"
     counts = {"hopf": len(result.crossings), "branch": len(result.curves), "point": len(cycles)}
     counts["special"] = len(specials)
@@ -111,7 +114,7 @@ def branch_values(
     }
     values["followed_from"], values["followed_to"] = result.followed_range
     values |= value_lists(branch_cycle_variables(parameter_name), cycles, point_count)
-    values |= value_lists(special_variables(parameter_name), specials, special_count)
+    values |= value_lists(special_point_variables(parameter_name), specials, special_count)
     return values | {"seconds": result.seconds, "status": result.status}
 
 
@@ -161,5 +164,5 @@ def _special_point_values(
         "special_unstable_after": crossing.unstable_after if crossing else -1,
     }
     given_names = {*values, "special_branch", "special_meets"}
-    variables = [variable for variable in special_variables("F") if variable.name not in given_names]
+    variables = [variable for variable in special_point_variables("F") if variable.name not in given_names]
     return values | outcome_values(variables, point, prefix="special_", names=SPECIAL_POINT_FIELD_BY_VARIABLE)

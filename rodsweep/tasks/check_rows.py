@@ -78,6 +78,7 @@ def arms_line(
     linear material.
 
     Empty for all other arms. columns: values of the rods' parameters by name, arrays of any shape.
+    first_mesh: function that returns the finest initial mesh, or None.
     """
     if config.is_uniform_and_linear:
         return ""
@@ -108,8 +109,8 @@ def _taper_and_profile_texts(config: Config, columns: Mapping[str, np.ndarray]) 
 
 
 def _profile_text(config: Config, profile: Profile) -> str:
-    """Text describing a profile. The profile of a cone in SI units is computed by rodsweep: the drag at each
-    radius."""
+    """Text describing a profile. For a cone in SI units, whose profile rodsweep computes, the text names only
+    the drag of each local radius."""
     arm = config.parameters.arm
     if config.stated_rod_material is None and arm is not None and arm.cone_parameter_names:
         return "the drag of each local radius"

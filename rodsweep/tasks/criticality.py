@@ -24,13 +24,13 @@ class CriticalityTask(HopfPointTask):
     config: CriticalityConfig
     """The config, with the section `criticality`."""
 
-    def check_headline(self) -> str:
+    def headline_of_check(self) -> str:
         F_max = self.config.criticality.F_max
         return point_count_text_with_clause(
             self.points, f"searched from F = 0 to {F_max:g}{search_end_below_crushing_clause(self.config)}"
         )
 
-    def requested_result_rows(self) -> list[CheckRow]:
+    def rows_on_requested_results(self) -> list[CheckRow]:
         max_thresholds = self.config.criticality.crossings
         return [
             self.AXIAL_DRAG_ROW,
@@ -51,7 +51,7 @@ class CriticalityTask(HopfPointTask):
         options = self.config.criticality
         request = ThresholdsRequest(options.F_max, self.config.accuracy, options.certify, options.crossings)
         return Solver(
-            statuses=tuple(CriticalityStatus),
+            possible_statuses=tuple(CriticalityStatus),
             warm_up=warm_up,
             solve=lambda index: solve_criticality(self.points.rod(index), request),
             file_values_of_outcome=lambda index, result: criticality_values(result, options.crossings),

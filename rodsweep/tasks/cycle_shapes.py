@@ -20,8 +20,8 @@ SHAPE_COUNT = 48
 TIP_AND_ENERGY_SAMPLE_COUNT = 256
 """Number of samples of the tip and of the energy per period."""
 MAX_PERIOD_DIFFERENCE_IN_ERRORS = 100
-"""Two cycles are treated as different if the difference of the stored and the new period exceeds this
-multiple of the sum of their estimated errors."""
+"""Two cycles are treated as different if the difference between the stored and the new period exceeds this
+multiple of the sum of the estimated errors of both periods."""
 
 
 def with_shapes(view: ResultView, numbers: Sequence[int]) -> ResultView:
@@ -70,9 +70,9 @@ def _solve_stored_point(view: ResultView, number: int) -> tuple[Job, dict[str, A
 
 def _job_of_point(view: ResultView, number: int) -> Job:
     """Job that solves one point of the file again with SHAPE_COUNT shapes and TIP_AND_ENERGY_SAMPLE_COUNT
-    samples. Parameters, material, accuracy, harmonics and start are those of the file, for a start from a
-    mode also amplitude and most_periods; a start from a neighbour becomes a start from the leading mode.
-    number: number of the point, from 1."""
+    samples. Parameters, material, accuracy, harmonics and start are taken from the file; unless the start is
+    a Hopf point, also amplitude and most_periods. A start from a neighbour becomes a start from the leading
+    mode. number: number of the point, from 1."""
     stored = view.config["limit_cycle"]
     is_from_hopf = stored["start"] == "hopf"
     kept_options = ["harmonics"] if is_from_hopf else ["harmonics", "amplitude", "most_periods"]

@@ -26,7 +26,7 @@ from ..results.layouts.variables import FilledVariable, Variable, outcome_values
 from ..solve.backend.availability import require_solvers
 from ..sweep.cost_estimate import CostEstimate
 from ..sweep.cycle_cost import cycles_cost, marched_cycles_cost
-from ..sweep.first_mesh import largest_first_mesh
+from ..sweep.finest_initial_mesh import finest_initial_mesh
 from ..sweep.points.chains import Chains, SweepChains
 from ..sweep.points.points_from_config import require_in_range
 from ..wording import counted
@@ -37,7 +37,7 @@ from .check_rows import (
     stretch_shear_and_drag_rows,
     varying_arm_and_law_rows,
 )
-from .hopf.hopf_search_lines import HopfSearchLine, filled_hopf_point_variables, hopf_search_lines_of_points
+from .hopf.hopf_on_lines import HopfSearchLine, filled_hopf_point_variables, hopf_search_lines_of_points
 from .protocol import CheckRow, MapInOrder, NamedArrays, Solver, Task, map_on_one_rank
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ class LimitCycleTask(Task):
         hopf_points = in_order(lines, HopfSearchLine.hopf_points)
         return filled_hopf_point_variables(self.points.names, lines, hopf_points)
 
-    def check_headline(self) -> str:
+    def headline_of_check(self) -> str:
         options = self.config.limit_cycle
         chains = self.chains
         start_text = f"the leading mode with tip deflection {options.amplitude:g} L"
@@ -104,7 +104,7 @@ class LimitCycleTask(Task):
             start_text = "the nearest Hopf point below its force"
         if chains is None:
             return point_count_text_with_clause(self.points, f"started from {start_text}")
-        chains_text = f"{counted(chains.count, 'chain')} of {chains.length}"
+        chains_text = f"{counted(chains.count, 'chain')} of {chains.points_per_chain}"
         return (
             f"{point_count_text(self.points)} in {chains_text}, {options.direction} in "
             f"{self.config.chain_parameter}: each starts from its neighbour's cycle; the first point, and a "
@@ -126,13 +126,13 @@ class LimitCycleTask(Task):
 
         options = self.config.limit_cycle
         if options.start == "hopf":
-            return largest_first_mesh(self.points, coarse_mesh_for_branch_to_cycle)
+            return finest_initial_mesh(self.points, coarse_mesh_for_branch_to_cycle)
         accuracy = accuracy_of_motion_mesh(options.transient > 0)
         if options.method == "integration":
             accuracy = self.config.accuracy
-        return largest_first_mesh(self.points, lambda rod: motion_mesh(rod, accuracy))
+        return finest_initial_mesh(self.points, lambda rod: motion_mesh(rod, accuracy))
 
-    def check_rows(self) -> list[CheckRow]:
+    def rows_of_check(self) -> list[CheckRow]:
         """Rows of the table of modelled and neglected effects, and of stored variables."""
         options = self.config.limit_cycle
         gamma1 = np.unique(self.points.parameter_values_of_rods["gamma1"])[:5]
@@ -178,7 +178,7 @@ class LimitCycleTask(Task):
 
     def solver(self) -> Solver:
         from ..solve.cycle.limit_cycle import CycleStart, CycleStatus, solve_cycle
-        from ..solve.cycle.reference_rod import warm_up
+        from ..solve.cycle.rod_with_known_cycle import warm_up
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
         request = self.cycle_request()
@@ -194,7 +194,7 @@ class LimitCycleTask(Task):
             return cycle, cycle.start_for_next_rod if cycle.status == CycleStatus.cycle else None
 
         by_collocation = Solver(
-            statuses=tuple(CycleStatus),
+            possible_statuses=tuple(CycleStatus),
             warm_up=warm_up,
             solve=solve,
             file_values_of_outcome=lambda index, cycle: self.cycle_values(
@@ -209,7 +209,7 @@ class LimitCycleTask(Task):
 
         return replace(
             by_collocation,
-            statuses=tuple(IntegratedCycleStatus),
+            possible_statuses=tuple(IntegratedCycleStatus),
             solve=lambda index: solve_by_integration(self.points.rod(index), request),
         )
 

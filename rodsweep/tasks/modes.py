@@ -14,7 +14,7 @@ from ..results.layouts.modes import GROWTH_VARIABLES, MODE_SCALAR_VARIABLES
 from ..results.layouts.spectrum import MODE_VARIABLES, POINT_VARIABLES
 from ..results.layouts.variables import outcome_values
 from ..sweep.cost_estimate import CostEstimate, modes_cost, spectra_cost
-from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
+from ..sweep.finest_initial_mesh import finest_initial_mesh, spectrum_mesh
 from .base_classes import ModesOfPointsTask
 from .check_rows import point_count_text
 from .protocol import CheckRow, Solver
@@ -31,16 +31,17 @@ class ModesTask(ModesOfPointsTask):
     """The config, with the section `modes`."""
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """Material coordinates u of the nodes at which modes are stored, (nodes,), by dimension."""
+        """Material coordinates u of the nodes at which modes are stored, (nodes,), by name of the
+        dimension."""
         return {"u": lobatto_points(self.config.modes.nodes)}
 
-    def check_headline(self) -> str:
+    def headline_of_check(self) -> str:
         options = self.config.modes
         return (
             f"{point_count_text(self.points)}, {options.modes} leading modes each, on {options.nodes} nodes"
         )
 
-    def requested_result_rows(self) -> list[CheckRow]:
+    def rows_on_requested_results(self) -> list[CheckRow]:
         growth = self.config.modes.growth
         norm_text = "in the norm of the dissipation" if growth else "modes.growth: false"
         return [
@@ -52,7 +53,7 @@ class ModesTask(ModesOfPointsTask):
     def finest_initial_mesh(self) -> Elements | None:
         accuracy = mesh_accuracy(self.config.accuracy, needs_vectors=False)
         mode_count = self.config.modes.modes
-        return largest_first_mesh(self.points, lambda rod: spectrum_mesh(rod, mode_count, accuracy))
+        return finest_initial_mesh(self.points, lambda rod: spectrum_mesh(rod, mode_count, accuracy))
 
     def cost(self) -> CostEstimate:
         options = self.config.modes
@@ -69,7 +70,7 @@ class ModesTask(ModesOfPointsTask):
         request = ModesRequest(*requested_numbers, options.growth, options.certify)
         warm_up_request = ModesRequest(2, 1e-4, 9, options.growth, True)
         return Solver(
-            statuses=tuple(SpectrumStatus),
+            possible_statuses=tuple(SpectrumStatus),
             warm_up=lambda: solve_modes(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), warm_up_request),
             solve=lambda index: solve_modes(self.points.rod(index), request),
             file_values_of_outcome=lambda index, result: mode_values(result, options.growth),

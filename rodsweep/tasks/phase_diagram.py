@@ -11,7 +11,12 @@ from ..model.rod import Crushed, Rod
 from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL_POINTS
 from ..sweep.branch_cost import branches_cost
 from ..sweep.cost_estimate import CostEstimate, sampled_points_with_rod
-from ..sweep.search_cost import MAX_SAMPLED_ROWS, diagram_cost, pulled_rows_seconds, soft_searches_seconds
+from ..sweep.search_cost import (
+    MAX_SAMPLED_ROWS,
+    diagram_cost,
+    extra_seconds_of_soft_searches,
+    pulled_rows_seconds_and_doubt,
+)
 from .base_classes import CertifiedTask
 from .diagram.curve_variables import row_cycle_values
 from .diagram.diagram_curve_search import DiagramCurveSolver
@@ -29,8 +34,8 @@ WORK_NOT_IN_COST_ESTIMATE_TEXT = (
     "branches beyond the range, curves of folds and torus points, and rows that such a curve shows to have a "
     "detached branch"
 )
-"""Work of a diagram with cycles that only the solved rows show; of small diagrams it can take most of the
-time: 30 s beside 2 s of a diagram of three rows with a detached branch."""
+"""Work of a diagram with cycles that only the solved rows show. It can take most of the time of a small
+diagram: 30 s, besides 2 s for the rows, in a diagram of three rows with a detached branch."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,26 +47,26 @@ class PhaseDiagramTask(CertifiedTask):
 
     uncertified_risk: ClassVar[str] = "crossings may be missed"
     """Consequence of a missing certificate, as `check` prints it."""
-    mode_count_location: ClassVar[str] = "line"
+    modes_counted_per: ClassVar[str] = "line"
     """The certificate counts the modes of some rods on each row."""
 
     @property
-    def line_values(self) -> np.ndarray:
+    def values_along_row(self) -> np.ndarray:
         """Values of the parameter that varies along every row, (values,)."""
         return self.config.parameters.axes[self.config.plane_parameters[0]].array()
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Values of the parameter that varies along every row, (values,), by its name."""
-        return {self.config.plane_parameters[0]: self.line_values}
+        return {self.config.plane_parameters[0]: self.values_along_row}
 
-    def check_headline(self) -> str:
+    def headline_of_check(self) -> str:
         line_parameter, row_parameter = self.config.plane_parameters
         return (
-            f"{self.points.count} rows, one for each {row_parameter}, of {len(self.line_values)} "
+            f"{self.points.count} rows, one for each {row_parameter}, of {len(self.values_along_row)} "
             f"values of {line_parameter} each"
         )
 
-    def requested_result_rows(self) -> list[CheckRow]:
+    def rows_on_requested_results(self) -> list[CheckRow]:
         options = self.config.phase_diagram
         curves_text = "followed from row to row" if options.curves else "phase_diagram.curves: false"
         criticality_text = "phase_diagram.criticality adds it"
@@ -84,9 +89,9 @@ class PhaseDiagramTask(CertifiedTask):
             ("criticality of Hopf curves", options.criticality, criticality_text),
             (
                 "curves of generalised Hopf points",
-                options.bautin_parameter is not None,
-                f"over {options.bautin_parameter[0]}"
-                if options.bautin_parameter
+                options.bautin_name_and_axis is not None,
+                f"over {options.bautin_name_and_axis[0]}"
+                if options.bautin_name_and_axis
                 else "phase_diagram.bautin_along adds them",
             ),
             ("stable states, with cycles", options.cycles, cycles_text),
@@ -94,12 +99,12 @@ class PhaseDiagramTask(CertifiedTask):
 
     def searched_range_ends(self) -> dict[str, np.ndarray]:
         """First and last value of the parameter that varies along the rows, (2,), by its name."""
-        return {self.config.plane_parameters[0]: self.line_values[[0, -1]]}
+        return {self.config.plane_parameters[0]: self.values_along_row[[0, -1]]}
 
-    def check_rows(self) -> list[CheckRow]:
+    def rows_of_check(self) -> list[CheckRow]:
         """Rows of `check`: the rows of a linear task and, if cycles are requested, a row on the nonlinear
         motion."""
-        linear = CertifiedTask.check_rows(self)
+        linear = CertifiedTask.rows_of_check(self)
         if not self.config.phase_diagram.cycles:
             return linear
         nonlinear = ("nonlinear motion", True, "of the cycles; in the plane, geometrically exact")
@@ -110,7 +115,7 @@ class PhaseDiagramTask(CertifiedTask):
         is_varying = not self.config.is_uniform_and_linear
         requested = options.certify, is_varying, options.curves, options.criticality
         rows_cost = diagram_cost(self.points.count, *requested)
-        line_range = (float(self.line_values[0]), float(self.line_values[-1]))
+        line_range = (float(self.values_along_row[0]), float(self.values_along_row[-1]))
         if self.config.plane_parameters[0] == "F":
             rows_cost = self._cost_with_soft_and_pulled_rows(rows_cost, is_varying)
         if not options.cycles:
@@ -127,10 +132,10 @@ class PhaseDiagramTask(CertifiedTask):
 
     def _cost_with_soft_and_pulled_rows(self, rows_cost: CostEstimate, is_varying: bool) -> CostEstimate:
         """The cost `rows_cost` of rows along F with the further time of soft and of pulled rows."""
-        soft = soft_searches_seconds(self.points, float(self.line_values[-1]), is_varying)
+        soft = extra_seconds_of_soft_searches(self.points, float(self.values_along_row[-1]), is_varying)
         sampled_rows = sampled_points_with_rod(self.points, MAX_SAMPLED_ROWS)
         rods = [rod for row in sampled_rows if (rod := self.rod_of_row(int(row)))]
-        pulled, doubt = pulled_rows_seconds(rods, self.line_values, self.points.count)
+        pulled, doubt = pulled_rows_seconds_and_doubt(rods, self.values_along_row, self.points.count)
         return replace(rows_cost, seconds=rows_cost.seconds + soft + pulled, underestimated_rods=doubt)
 
     def solver(self) -> Solver:
@@ -142,7 +147,7 @@ class PhaseDiagramTask(CertifiedTask):
         workspace = NewtonWorkspace()
         curves = DiagramCurveSolver(self, workspace)
         row_solver = Solver(
-            statuses=tuple(ThresholdStatus),
+            possible_statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
             solve=self.solve_straight_row,
             file_values_of_outcome=lambda index, result: self.straight_row_values(result),
@@ -155,9 +160,11 @@ class PhaseDiagramTask(CertifiedTask):
 
         return replace(
             row_solver,
-            statuses=tuple(CoexistenceStatus),
+            possible_statuses=tuple(CoexistenceStatus),
             warm_up=warm_up_branches,
-            solve=lambda index: curves.cache_row(index, self.solve_coexistence_row(index, workspace)),
+            solve=lambda index: curves.cache_special_points_of_row(
+                index, self.solve_coexistence_row(index, workspace)
+            ),
             file_values_of_outcome=lambda index, result: self.coexistence_row_values(result),
         )
 
@@ -166,17 +173,18 @@ class PhaseDiagramTask(CertifiedTask):
         from ..solve.changes.diagram.rows import crushed_row, solve_row
 
         rod = self.rod_of_row(index)
-        return solve_row(rod, self.row_request()) if rod else crushed_row(self.line_values)
+        return solve_row(rod, self.row_request()) if rod else crushed_row(self.values_along_row)
 
     def solve_coexistence_row(
         self, index: int, workspace: "NewtonWorkspace", starts: "Sequence[SpecialPoint]" = ()
     ) -> "CoexistenceRow":
-        """Solves a row with cycles. starts: special points from which further branches are followed."""
+        """Solves a row with cycles. index: flat index of the row. workspace: memory of Newton's matrices.
+        starts: special points from which further branches are followed."""
         from ..solve.branch.coexistence import crushed_coexistence_row, solve_coexistence
 
         rod = self.rod_of_row(index)
         if rod is None:
-            return crushed_coexistence_row(self.line_values)
+            return crushed_coexistence_row(self.values_along_row)
         return solve_coexistence(rod, self.row_request(), workspace, starts)
 
     def straight_row_values(self, result: "DiagramRow") -> dict[str, Any]:
@@ -204,7 +212,7 @@ class PhaseDiagramTask(CertifiedTask):
         options = self.config.phase_diagram
         return RowRequest(
             parameter_name=self.config.plane_parameters[0],
-            parameter_values=self.line_values,
+            parameter_values=self.values_along_row,
             accuracy=self.config.accuracy,
             certify=options.certify,
             max_thresholds=options.crossings,
@@ -214,9 +222,8 @@ class PhaseDiagramTask(CertifiedTask):
 
 
 def row_values(result: "DiagramRow", line_parameter: str, max_crossings: int) -> dict[str, Any]:
-    """Variables of the file for one row.
-
-    max_crossings: length of the list of crossings.
+    """Variables of the file for one row. line_parameter: parameter that varies along the row. max_crossings:
+    length of the list of crossings.
     """
     classes = {"class": result.stability_class, "unstable_count": result.unstable_count}
     changes = crossing_values(result.thresholds, max_crossings, line_parameter, "crossing_at")

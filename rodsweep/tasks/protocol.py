@@ -51,7 +51,7 @@ class SweepWideResult:
     messages: Mapping[int, str] = field(default_factory=dict)
 
 
-class SweepWideSolver(Protocol):
+class SweepWideVariableSolver(Protocol):
     """Computes variables that depend on all points, for example curves. Every rank has its own object."""
 
     def work_items(self, view: ResultView, results: Mapping[int, NamedArrays]) -> WorkItems | None:
@@ -62,13 +62,13 @@ class SweepWideSolver(Protocol):
         view: the file with all points. results: results of work items so far, by number.
         """
 
-    def cached_starts(self, items: Any, item_numbers: Sequence[int]) -> dict[Any, Any]:
+    def cached_branch_starts(self, items: Any, item_numbers: Sequence[int]) -> dict[Any, Any]:
         """Initial data, by key, that this rank has cached for the work items numbered `item_numbers` of
         `items`, to be sent to all ranks."""
 
-    def add_starts(self, starts: Mapping[Any, Any]) -> None:
+    def cache_starts(self, starts: Mapping[Any, Any]) -> None:
         """Caches initial data received from a different rank. starts: initial data by key, as from
-        `cached_starts`."""
+        `cached_branch_starts`."""
 
     def solve_item(self, items: Any, item: int) -> NamedArrays:
         """Solves the work item number `item` of `items`, and returns its result."""
@@ -87,7 +87,7 @@ class SweepWideSolver(Protocol):
 class Solver:
     """Functions with which every rank solves the points of a task."""
 
-    statuses: Sequence[PointStatus]
+    possible_statuses: Sequence[PointStatus]
     """All statuses that a point can have."""
     warm_up: Callable[[], object]
     """Triggers compilation and fills caches before any point is timed."""
@@ -95,7 +95,7 @@ class Solver:
     """Solves the point at a flat index; returns an outcome with the attributes `status` and `message`."""
     file_values_of_outcome: Callable[[int, Any], dict[str, Any]]
     """Function from (flat index, outcome) of a point to the values of the file's variables, by name."""
-    sweep_wide_solver: SweepWideSolver | None = None
+    sweep_wide_solver: SweepWideVariableSolver | None = None
     """Computes the variables that depend on all points; None for tasks without such variables."""
     sweep_chains: SweepChains | None = None
     """Chains of points, each started from the solution of the previous point; used instead of `solve`. None
@@ -173,7 +173,7 @@ class Task(ABC):
         return ()
 
     @abstractmethod
-    def check_headline(self) -> str:
+    def headline_of_check(self) -> str:
         """Line of `check` with the number of points and the computation at each point."""
 
     def arms_line(self) -> str:
@@ -185,7 +185,7 @@ class Task(ABC):
         return ""
 
     @abstractmethod
-    def check_rows(self) -> list[CheckRow]:
+    def rows_of_check(self) -> list[CheckRow]:
         """Rows of the table, printed by `check`, of modelled and neglected effects."""
 
     @abstractmethod

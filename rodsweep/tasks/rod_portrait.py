@@ -64,8 +64,9 @@ class PortraitRequest:
         F: float | None = None,
         default_accuracy: float | None = None,
     ) -> Job:
-        """Job of a task for this rod. F: force, None for tasks that vary the force. default_accuracy:
-        relative accuracy if the request has none; None for the default of the task."""
+        """Job of a task for this rod. options: options of the task by name. F: force, None for tasks that
+        vary the force. default_accuracy: relative accuracy if the request has none; None for the default of
+        the task."""
         given_values = self.rod.parameters
         names = (*CONFIG_CLASSES_BY_TASK[task].rod_parameters_used(options), *OPTIONAL_PARAMETER_NAMES)
         values: dict[str, Any] = {
@@ -122,7 +123,7 @@ def solve_rod_results(request: PortraitRequest, solve: SolveJobFunction = solve_
         rod=request.rod,
         F_max=request.F_max,
         views=views,
-        modes=modes,
+        modes_at_first_thresholds=modes,
         cycles=cycles,
         missing_result_reasons=missing,
     )

@@ -10,7 +10,10 @@ from ..config.task.spectrum import SpectrumConfig
 from ..discretization.elements.elements import Elements
 from ..discretization.elements.quadrature import lobatto_points
 from ..discretization.elements.resolution import mesh_accuracy
-from ..discretization.straight.longitudinal_modes import longitudinal_eigenvalues, longitudinal_modes
+from ..discretization.straight.longitudinal_modes import (
+    longitudinal_eigenvalues,
+    longitudinal_eigenvalues_and_errors,
+)
 from ..errors import InputError
 from ..model.material.laws import LINEAR_CONSTITUTIVE_LAW
 from ..model.material.rod_material import RodMaterial
@@ -18,12 +21,12 @@ from ..model.rod import Crushed, Rod
 from ..results.layouts.spectrum import (
     FOLLOWED_POINT_VARIABLES,
     MODE_VARIABLES,
-    longitudinal_parameters,
-    longitudinal_variables,
+    longitudinal_eigenvalue_variables,
+    longitudinal_parameter_names,
 )
 from ..results.layouts.variables import FilledVariable, outcome_values
 from ..sweep.cost_estimate import CostEstimate, followed_spectra_cost, spectra_cost, two_meshes_cost
-from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
+from ..sweep.finest_initial_mesh import finest_initial_mesh, spectrum_mesh
 from ..sweep.points.groups import GroupResult, PointGroups, groups_along_longest_axis
 from .base_classes import ModesOfPointsTask
 from .check_rows import point_count_text
@@ -73,7 +76,7 @@ class SpectrumTask(ModesOfPointsTask):
         dimensions, points_shape, columns = self._points_with_distinct_longitudinal_rates()
         mode_count = self.config.spectrum.modes
         is_closed_form = self.config.is_uniform_and_linear
-        variables = longitudinal_variables(gamma1, *dimensions, is_closed_form=is_closed_form)
+        variables = longitudinal_eigenvalue_variables(gamma1, *dimensions, is_closed_form=is_closed_form)
         if is_closed_form:
             rates = [longitudinal_eigenvalues(float(k1), gamma1, mode_count) for k1 in columns["k1"]]
             return ((variables[0], np.reshape(rates, (*points_shape, mode_count))),)
@@ -97,7 +100,7 @@ class SpectrumTask(ModesOfPointsTask):
         which the rates depend, by name, flattened to (points,)."""
         points = self.points
         linear = self.config.rod_material.constitutive_law is LINEAR_CONSTITUTIVE_LAW
-        parameter_names = longitudinal_parameters(self.config.is_uniform_and_linear, linear)
+        parameter_names = longitudinal_parameter_names(self.config.is_uniform_and_linear, linear)
         names = [name for name in parameter_names if name in points.columns_by_name]
         columns = {name: points.columns_by_name[name] for name in names}
         if points.arm_axes or not points.is_grid:
@@ -110,10 +113,10 @@ class SpectrumTask(ModesOfPointsTask):
             dict(zip(names, (coordinate.ravel() for coordinate in grid), strict=True)),
         )
 
-    def check_headline(self) -> str:
+    def headline_of_check(self) -> str:
         return f"{point_count_text(self.points)}, {self.config.spectrum.modes} leading modes each"
 
-    def requested_result_rows(self) -> list[CheckRow]:
+    def rows_on_requested_results(self) -> list[CheckRow]:
         options = self.config.spectrum
         vectors_text = f"on {options.nodes} nodes" if options.vectors else "spectrum.vectors adds them"
         longitudinal_text = "they decouple; spectrum.longitudinal adds them"
@@ -131,11 +134,11 @@ class SpectrumTask(ModesOfPointsTask):
         accuracy = self.config.accuracy
         if options.vectors or options.method == "determinant":
             accuracy = mesh_accuracy(accuracy, options.vectors)
-        return largest_first_mesh(self.points, lambda rod: spectrum_mesh(rod, options.modes, accuracy))
+        return finest_initial_mesh(self.points, lambda rod: spectrum_mesh(rod, options.modes, accuracy))
 
-    def certificate(self) -> tuple[bool, str]:
+    def has_certificate_and_reason(self) -> tuple[bool, str]:
         if self.config.spectrum.method == "determinant":
-            return ModesOfPointsTask.certificate(self)
+            return ModesOfPointsTask.has_certificate_and_reason(self)
         return False, f"spectrum.method: {self.config.spectrum.method}; {self.uncertified_risk}"
 
     def cost(self) -> CostEstimate:
@@ -149,10 +152,10 @@ class SpectrumTask(ModesOfPointsTask):
         return followed_spectra_cost(unfollowed, self.groups, self.points, options.modes)
 
     def solver(self) -> Solver:
+        from ..solve.spectrum.krylov_schur_on_two_meshes import solve_on_two_meshes
         from ..solve.spectrum.path.neighbouring_rods import warm_up as warm_up_following
         from ..solve.spectrum.search import SpectrumRequest, solve_spectrum, warm_up
         from ..solve.spectrum.status import SpectrumStatus
-        from ..solve.spectrum.two_meshes import solve_on_two_meshes
 
         options = self.config.spectrum
         accuracy, certifies = self.config.accuracy, self.config.certifies
@@ -160,7 +163,7 @@ class SpectrumTask(ModesOfPointsTask):
         groups = self.groups
         solve = solve_spectrum if options.method == "determinant" else solve_on_two_meshes
         return Solver(
-            statuses=tuple(SpectrumStatus),
+            possible_statuses=tuple(SpectrumStatus),
             warm_up=warm_up_following if groups else warm_up,
             solve=lambda index: solve(self.points.rod(index), request),
             file_values_of_outcome=lambda index, result: spectrum_values(result),
@@ -187,12 +190,13 @@ class SpectrumTask(ModesOfPointsTask):
 def longitudinal_rates_and_errors_of_arm(
     values: dict[str, float], material: RodMaterial, mode_count: int
 ) -> np.ndarray:
-    """(longitudinal growth rates in 1/tau2, relative errors) of an arm, (2, modes); NaN for a crushed arm."""
+    """(longitudinal growth rates in 1/tau2, relative errors) of an arm, (2, modes); NaN for a crushed arm.
+    values: parameters of the arm by name; without a value F and gamma3 are 0 and k2 is inf."""
     try:
         rod = Rod(**{"F": 0.0, "k2": np.inf, "gamma3": 0.0} | values, material=material)
     except Crushed:
         return np.full((2, mode_count), np.nan)
-    return np.array(longitudinal_modes(rod, mode_count))
+    return np.array(longitudinal_eigenvalues_and_errors(rod, mode_count))
 
 
 def spectrum_values(result: "Spectrum") -> dict[str, Any]:

@@ -38,14 +38,14 @@ class ThresholdsTask(CertifiedTask):
 
     uncertified_risk: ClassVar[str] = "crossings may be missed"
     """Consequence of a missing certificate, as `check` prints it."""
-    mode_count_location: ClassVar[str] = "line"
+    modes_counted_per: ClassVar[str] = "line"
     """The certificate counts the modes of some rods on each line along F."""
 
-    def check_headline(self) -> str:
+    def headline_of_check(self) -> str:
         end_text = f"{self.config.thresholds.F_max:g}{search_end_below_crushing_clause(self.config)}"
         return point_count_text_with_clause(self.points, f"searched from F = 0 to {end_text}")
 
-    def requested_result_rows(self) -> list[CheckRow]:
+    def rows_on_requested_results(self) -> list[CheckRow]:
         max_thresholds = self.config.thresholds.crossings
         return [
             ("onset, Hopf points, restabilization", True, "task: thresholds"),
@@ -64,7 +64,7 @@ class ThresholdsTask(CertifiedTask):
         options = self.config.thresholds
         request = ThresholdsRequest(options.F_max, self.config.accuracy, options.certify, options.crossings)
         return Solver(
-            statuses=tuple(ThresholdStatus),
+            possible_statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
             solve=lambda index: solve_thresholds(self.points.rod(index), request),
             file_values_of_outcome=lambda index, result: threshold_values(result, options.crossings),
@@ -99,8 +99,8 @@ def crossing_values(
     is_failed = result.status == type(result.status).failed
     return value_lists(variables, rows, max_crossings) | {
         "crossing_count": -1 if is_failed else len(thresholds),
-        "open_from": search_result.open_range[0],
-        "open_to": search_result.open_range[1],
+        "open_from": search_result.range_of_further_crossings[0],
+        "open_to": search_result.range_of_further_crossings[1],
         "certified": search_result.is_proved,
         "boxes": search_result.determinant_evaluation_count,
         "solves": search_result.eigenvalue_solve_count,

@@ -7,12 +7,12 @@ from html import escape
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import Validity
-from .assessment import Assessment
 from .checks import Check, checks_of
 from .load_texts import LoadFormatter
 from .number_rows import NumberRow, number_rows
 from .planes import planes_of, with_absolute_load
 from .sentences import verdict_sentences
+from .validity_assessment import ValidityAssessment
 
 BRACKETS_NOTE = "In brackets: the range over drag, which is known only up to a factor."
 """Sentence below the table of numbers, which explains the values in brackets."""
@@ -78,11 +78,11 @@ def arm_report(arm: SlenderArm) -> ArmReport:
     """Solves for the thresholds of an arm and returns the report. Raises InputError if the load is given
     relative to the flutter load and the arm does not flutter."""
     planes = with_absolute_load(planes_of(arm))
-    first_plane = planes.first
-    assessment = Assessment(first_plane.arm, first_plane.thresholds)
+    first_plane = planes.first_to_flutter
+    assessment = ValidityAssessment(first_plane.arm, first_plane.thresholds)
     checks = checks_of(assessment)
     # If the model does not apply at all, the verdict says so itself, and a doubt adds nothing.
-    is_applicable = assessment.validity_of_verdict < Validity.does_not_apply
+    is_applicable = assessment.validity_at_flutter_and_load < Validity.does_not_apply
     doubtful_checks = tuple(
         check
         for check in checks
@@ -94,7 +94,7 @@ def arm_report(arm: SlenderArm) -> ArmReport:
         # The reader typed a multiple of flutter, so the absolute load has to be stated once.
         others.insert(0, f"{LoadFormatter(first_plane.arm).typed_text} is {load} with the likeliest drag.")
     return ArmReport(
-        validity=assessment.validity_of_verdict,
+        validity=assessment.validity_at_flutter_and_load,
         warnings=doubtful_checks,
         verdict=(headline, *others),
         rows=tuple(number_rows(first_plane)),

@@ -10,7 +10,7 @@ from ..model.material.laws import LINEAR_CONSTITUTIVE_LAW
 from ..wording import two_significant_digits
 
 if TYPE_CHECKING:
-    from .assessment import Assessment  # for annotations only: the module imports solvers
+    from .validity_assessment import ValidityAssessment  # for annotations only: the module imports solvers
 
 MIN_ACCURATE_SLENDERNESS = 20.0
 """Smallest ratio of length to radius at which slender-body theory is accurate to about ten percent."""
@@ -19,7 +19,7 @@ THRESHOLD_DECREASE_PER_INERTIA_PHASE = 0.64
 velocity caused by inertia."""
 SAG_AT_SELF_BUCKLING = SELF_BUCKLING_WEIGHT / 8
 """Sag over length, w L^3/(8 E I), of a horizontal arm whose weight w L just buckles an upright arm."""
-MAX_STATED_SAG = 0.25
+MAX_STATED_RELATIVE_SAG = 0.25
 """A check states the ratio of sag to length only below this: beyond, the linear formula is inaccurate."""
 USUAL_POISSON_RANGE = (0.3, 0.5)
 """Range of Poisson's ratio of rubbers and gels; a check warns of a Poisson's ratio outside this range."""
@@ -49,7 +49,7 @@ class Check:
         return self.sentence if self.is_negligible else f"warning: {self.sentence}"
 
 
-def checks_of(assessment: "Assessment") -> list[Check]:
+def checks_of(assessment: "ValidityAssessment") -> list[Check]:
     """Checks of all neglected effects on an arm, in the order of the report."""
     arm = assessment.arm
     effects = {effect.name: effect for effect in assessment.neglected_effects_at_flutter}
@@ -74,8 +74,9 @@ def slenderness_check(arm: SlenderArm) -> Check:
     return Check(_doubtful_if(not is_slender), f"Slenderness: the arm is {ratio:.3g} radii long; {reason}.")
 
 
-def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
-    """Check of F/k1, the compressive strain of the straight arm's weakest section, at flutter and loaded."""
+def compression_check(assessment: "ValidityAssessment", at_flutter: Effect) -> Check:
+    """Check of F/k1, the compressive strain of the straight arm's weakest section, at flutter and under the
+    load. at_flutter: the effect "compression" at the flutter threshold."""
     # The limit of linear elasticity means nothing for a law that holds at large strain.
     if assessment.arm.law != LINEAR_CONSTITUTIVE_LAW.law_name:
         return _rubber_compression_check(assessment)
@@ -103,7 +104,7 @@ def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
     return Check(validity, sentence, can_change_verdict=True)
 
 
-def _rubber_compression_check(assessment: "Assessment") -> Check:
+def _rubber_compression_check(assessment: "ValidityAssessment") -> Check:
     """Check of the compressive strain of a rubber arm. The check always passes, because the law of rubber is
     valid for large strains."""
     arm = assessment.arm
@@ -121,7 +122,8 @@ def _rubber_compression_check(assessment: "Assessment") -> Check:
 
 
 def _strain_text(load_name: str, arm_name: str, strain: float) -> str:
-    """Clause on the compressive strain of an arm under a load; a negative strain lengthens the arm."""
+    """Clause on the compressive strain of an arm under a load; a negative strain lengthens the arm.
+    load_name, arm_name: names of load and arm in the clause."""
     verb = "shortens" if strain >= 0 else "lengthens"
     return f"{load_name} {verb} {arm_name} by {two_significant_digits(100 * abs(strain))} %"
 
@@ -213,7 +215,9 @@ def weight_check(effect: Effect | None, arm: SlenderArm) -> Check:
     validity = _validity_of_effect(effect)
     sag = SAG_AT_SELF_BUCKLING * ratio
     sag_text = (
-        f"sags by {two_significant_digits(sag)} of its length" if sag < MAX_STATED_SAG else "hangs down"
+        f"sags by {two_significant_digits(sag)} of its length"
+        if sag < MAX_STATED_RELATIVE_SAG
+        else "hangs down"
     )
     remark = (
         "negligible",

@@ -5,7 +5,7 @@ from math import floor, log10
 from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import UNITS_AND_EXAMPLES
 from ..model.units import split_quantity, unit_of, value_in_unit, with_si_prefix
-from .flutter import RangeOverDrags
+from .flutter_over_drags import RangeOverDrags
 
 ROUNDING_TOLERANCE = 1e-12
 """Relative tolerance when rounding down. Without this tolerance, 4.7 could be printed as 4.69."""
@@ -39,7 +39,8 @@ def percent_range_text(low: float, high: float) -> str:
 
 
 TYPICAL_FLUTTER_FORCE = 36.0
-"""Typical flutter force, in k3/L^2. Without a load, its SI prefix (Pa, kPa) is chosen for this force."""
+"""Typical flutter force, in k3/L^2. If the user gave no load, loads are printed with the SI prefix (Pa, kPa)
+that suits this force."""
 MAX_TYPED_NUMBER_LENGTH = 6
 """A number of at most this many characters is reported as typed; a longer one is rounded to four digits."""
 
@@ -78,8 +79,8 @@ class LoadFormatter:
 
 
 def _shortened_load(load: object, value: float, si_unit: str) -> str:
-    """The load `load` as text: as the user typed it, or rounded to four digits if its number is long. A
-    load given as a number is written in the SI unit `si_unit`, in which it is `value`."""
+    """The load `load` as text: as the user typed it, or rounded to four digits if its number is long. A load
+    given as a bare number is written as `value` with the SI unit `si_unit`."""
     if not isinstance(load, str):
         return f"{value:.4g} {si_unit}"
     # A number as typed is recognised by the reader; only computed loads have many digits.

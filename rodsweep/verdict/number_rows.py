@@ -28,7 +28,7 @@ def number_rows(plane: PlaneOfMotion) -> list[NumberRow]:
     """Rows with all numbers of an arm, dimensional numbers first. plane: plane of the first flutter."""
     arm = plane.arm
     return [
-        *plane_row(plane),
+        *plane_rows(plane),
         *taper_segments_and_law_rows(arm),
         *dimensional_rows(arm),
         *flutter_force_row(plane),
@@ -37,7 +37,7 @@ def number_rows(plane: PlaneOfMotion) -> list[NumberRow]:
     ]
 
 
-def plane_row(plane: PlaneOfMotion) -> list[NumberRow]:
+def plane_rows(plane: PlaneOfMotion) -> list[NumberRow]:
     """Row with the plane of motion and the width w and height h of a rectangular section, h in this plane; an
     empty list for other sections."""
     if not plane.name:
@@ -107,9 +107,9 @@ def load_row(arm: SlenderArm) -> list[NumberRow]:
 
 
 def flutter_force_row(plane: PlaneOfMotion) -> list[NumberRow]:
-    """Row with the force at the tip at which the arm flutters; an empty list if the arm flutters with no drag
-    or only with part of the drags, or if a search failed. Of two arms with tips of different size, the larger
-    pressure may be the smaller force."""
+    """Row with the force at the tip at which the arm flutters; an empty list if the arm does not flutter for
+    one or more of the drags, or if a search failed. The force is stated because, of two arms with tips of
+    different size, the arm with the larger flutter pressure may have the smaller flutter force."""
     thresholds = plane.thresholds
     forces = [] if thresholds.failure_texts else plane.flutter_load_by_drag
     # A range over drags that leaves some drags out would look like the whole range.

@@ -9,10 +9,10 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import UNITS_AND_EXAMPLES
 from ..model.units import with_si_prefix
 from ..solve.changes.threshold_kinds import ThresholdKind
-from .flutter import ThresholdsOverDrags, thresholds_over_drags
+from .flutter_over_drags import ThresholdsOverDrags, thresholds_over_drags
 from .relative_load import with_exchanged_sides
 
-A = TypeVar("A", bound=SlenderArm)
+AnyArm = TypeVar("AnyArm", bound=SlenderArm)
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,19 +35,19 @@ class PlaneOfMotion:
 
 @dataclass(frozen=True, slots=True)
 class PlanesOfMotion:
-    """Planes in which an arm can bend. first: plane with the smaller flutter load for the most likely drag.
-    second: the other plane; None if all planes are equivalent."""
+    """Planes in which an arm can bend. first_to_flutter: plane with the smaller flutter load for the most
+    likely drag. second: the other plane; None if all planes are equivalent."""
 
-    first: PlaneOfMotion
+    first_to_flutter: PlaneOfMotion
     second: PlaneOfMotion | None = None
 
     @property
     def is_first_lowest_for_every_drag(self) -> bool:
-        """Whether, for every drag, the flutter load in the plane `first` is not larger than in `second`; True
-        without a second plane."""
+        """Whether, for every drag, the flutter load in the plane `first_to_flutter` is not larger than in
+        `second`; True without a second plane."""
         if self.second is None:
             return True
-        loads = zip(self.first.flutter_load_by_drag, self.second.flutter_load_by_drag, strict=True)
+        loads = zip(self.first_to_flutter.flutter_load_by_drag, self.second.flutter_load_by_drag, strict=True)
         return all(first_load <= second_load for first_load, second_load in loads)
 
 
@@ -69,7 +69,7 @@ def with_absolute_load(planes: PlanesOfMotion) -> PlanesOfMotion:
     """The planes, with the arm's load in a physical unit if it was relative to the flutter load. The flutter
     load is the smallest over all planes, for the most likely drag. Raises InputError if the arm does not
     flutter."""
-    first = planes.first
+    first = planes.first_to_flutter
     ratio = first.arm.load_over_flutter
     load = first.arm.load_name
     if ratio is None or load is None:
@@ -89,10 +89,10 @@ def with_absolute_load(planes: PlanesOfMotion) -> PlanesOfMotion:
     return PlanesOfMotion(replace(first, arm=replace(first.arm, **absolute_load)), second)
 
 
-def arm_with_absolute_load(arm: A) -> A:
+def arm_with_absolute_load(arm: AnyArm) -> AnyArm:
     """The arm with its load in a physical unit. Solves for the flutter load if the load is relative to the
     flutter load; raises InputError if such an arm does not flutter."""
     load = arm.load_name
     if load is None or arm.load_over_flutter is None:
         return arm
-    return replace(arm, **{load: getattr(with_absolute_load(planes_of(arm)).first.arm, load)})
+    return replace(arm, **{load: getattr(with_absolute_load(planes_of(arm)).first_to_flutter.arm, load)})

@@ -12,7 +12,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from ..determinant.certificate.covering import cover_with_boxes
+from ..determinant.certificate.covering import zeros_and_open_boxes_of_covering
 from ..determinant.certificate.first_crossing_boxes import first_crossing_boxes
 from ..determinant.parameter_path import ParameterPath, coefficients_at, determinant_value_on_path
 from ..determinant.roots.newton import LocatedEigenvalue
@@ -24,7 +24,7 @@ from ..model.rod import Rod
 from ..solve.changes.search_range import search_end_below_crushing
 from ..solve.changes.threshold_kinds import ThresholdKind
 
-A = TypeVar("A", bound=SlenderArm)
+AnyArm = TypeVar("AnyArm", bound=SlenderArm)
 SEARCH_END = 1000.0
 """Largest force of the search, in k3/L^2: 25 times the flutter force of a filament. An arm that a smaller
 force crushes is searched only up to the crushing force."""
@@ -33,8 +33,8 @@ FIRST_SEARCH_END = 200.0
 takes half the time of the full search."""
 SEARCH_ENDS_OF_VARYING_ARM = (3.0, 10.0, 30.0, 100.0, 300.0, SEARCH_END)
 """Largest forces of successive searches, in k3/L^2 at the base, for an arm that is not uniform or not of
-linear material. The first search that finds flutter is the last: far beyond flutter, where many modes are
-unstable, a search takes up to half a minute for each drag."""
+linear material. The search for a relative load ends with the first of these searches that finds flutter: far
+beyond flutter, where many modes are unstable, a search takes up to half a minute for each drag."""
 REFERENCE_FORCE_DIGITS = 10
 """Significant digits to which the reference force is rounded. Ten digits are more than the data of an arm
 have, and few enough to be equal on all machines. A run resumed elsewhere then has the same points."""
@@ -44,12 +44,12 @@ class FlutterSearchFailed(InputError):
     """Raised if the search for the flutter load of a relative load fails; the message states the reason."""
 
 
-def with_exchanged_sides(arm: A) -> A:
+def with_exchanged_sides(arm: AnyArm) -> AnyArm:
     """The arm turned by 90 degrees about its axis: width and height of its section are exchanged."""
     return replace(arm, width=arm.height, height=arm.width)
 
 
-def rods_by_plane(
+def rods_and_force_scales_by_plane(
     arm: SlenderArm, material: RodMaterial | None = None, taper: float | None = None
 ) -> list[tuple[Rod, float]]:
     """Pairs (rod, scale), one per plane of motion. rod: dimensionless rod without load, for the most likely
@@ -66,7 +66,7 @@ def rods_by_plane(
 
 def _rod_in_its_plane(arm: SlenderArm, material: RodMaterial | None, taper: float | None) -> Rod:
     """The arm as a rod that bends in the plane of the section's height. material: constitutive law and
-    profile. taper: ratio of tip to base radius."""
+    profile. taper: ratio of tip to base radius. None keeps the arm's material or taper."""
     rod = rod_with_drag(arm, arm.base_drag_estimates[0], material)
     return rod if taper is None else replace(rod, taper=taper)
 
@@ -112,7 +112,7 @@ def _first_hopf_force_by_boxes(path: ParameterPath, end_force: float) -> float:
             "the flutter threshold to which a relative load refers is not found, because no bound on the "
             "eigenvalues of this rod is known; give an absolute load"
         )
-    zeros, undecided, _ = cover_with_boxes(boxes, path.origin, path.direction)
+    zeros, undecided, _ = zeros_and_open_boxes_of_covering(boxes, path.origin, path.direction)
     force = min((zero.p for zero in zeros if _becomes_unstable(path, zero)), default=inf)
     # Undecided boxes beyond the first Hopf point cannot contain an earlier one.
     if any(min(box.p_from, box.p_to) < force for box in undecided):
@@ -141,7 +141,7 @@ def _first_hopf_force_of_varying_arm(path: ParameterPath, end_force: float) -> f
         (crossing.value for crossing in located.thresholds if crossing.kind == ThresholdKind.hopf),
         default=inf,
     )
-    # A search that ended early after the first Hopf point has all that is asked for.
+    # A search that ended early, but after the first Hopf point, has found the requested force.
     if not located.is_proved or (located.ended_early and force == inf):
         raise FlutterSearchFailed(
             "the flutter threshold to which a relative load refers is uncertain, because a Hopf point may be "

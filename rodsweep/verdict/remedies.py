@@ -7,20 +7,20 @@ from ..model.arm.neglected import Effect, Validity
 from ..model.arm.quantities import UNITS_AND_EXAMPLES
 from ..model.units import unit_of, value_in_unit
 from ..wording import two_significant_digits
-from .assessment import (
-    Assessment,
+from .load_texts import LoadFormatter
+from .validity_assessment import (
+    ValidityAssessment,
     rounded_down,
     rounded_up,
     thickness_factor_for_small_inertia,
     viscosity_factor_for_small_inertia,
 )
-from .load_texts import LoadFormatter
 
 MAX_FOUR_DIGIT_RATIO = 1.1
 """Ratios of an effect to its limit below this number are printed with four digits; two could read 1.0."""
 
 
-def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[str]:
+def not_applicable_sentences(arm: SlenderArm, assessment: ValidityAssessment) -> list[str]:
     """One sentence per kind of neglected effect beyond its limit, the largest ratio to the limit first."""
     effects = assessment.effects_with(Validity.does_not_apply)
     # The first effect of each kind stays.
@@ -40,7 +40,7 @@ def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[st
     return sentences
 
 
-def _effect_name(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
+def _effect_name(effect: Effect, arm: SlenderArm, assessment: ValidityAssessment) -> str:
     """Name of a neglected effect on an arm; compression under a pull is extension."""
     is_pulled = any(effect is loaded for loaded in assessment.compression_under_load) and arm.F < 0
     return "extension" if is_pulled else effect.name
@@ -58,7 +58,7 @@ def ratio_to_limit_text(effect: Effect) -> str:
     return f"{two_significant_digits(ratio)} times" if ratio >= MAX_FOUR_DIGIT_RATIO else f"{ratio:.4g} times"
 
 
-def _remedy_clause(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
+def _remedy_clause(effect: Effect, arm: SlenderArm, assessment: ValidityAssessment) -> str:
     """Clause that names the change of arm, fluid or load by which the effect is reduced to its limit."""
     ratio = float(1 / effect.value_over_limit)
     if effect_kind(effect) == "inertia":
@@ -75,9 +75,9 @@ def _remedy_clause(effect: Effect, arm: SlenderArm, assessment: Assessment) -> s
     return "the model needs a longer or a thinner arm"
 
 
-def _inertia_remedy_clause(arm: SlenderArm, assessment: Assessment) -> str:
-    """Clause with the smallest viscosity of the fluid, and the largest thickness of the arm if known, for
-    which inertia is within its limit."""
+def _inertia_remedy_clause(arm: SlenderArm, assessment: ValidityAssessment) -> str:
+    """Clause with the two remedies that bring inertia within its limit: the smallest viscosity of the fluid
+    and, if known, the largest thickness of the arm."""
     si_unit = UNITS_AND_EXAMPLES["viscosity"][0]
     unit = unit_of(arm.viscosity, si_unit)
     factor = viscosity_factor_for_small_inertia(assessment.neglected_effects_at_flutter)

@@ -6,22 +6,23 @@ so, and the sentences on flutter are conditional: "Without inertia the arm would
 
 from ..model.arm.neglected import Validity
 from ..solve.changes.threshold_kinds import ThresholdKind
-from .assessment import Assessment
-from .flutter import RangeOverDrags, ThresholdsOverDrags
+from .flutter_over_drags import RangeOverDrags, ThresholdsOverDrags
 from .load_texts import LoadFormatter, percent_range_text, three_digit_range_text
 from .planes import PlaneOfMotion, PlanesOfMotion
 from .remedies import effect_kind, not_applicable_sentences
+from .validity_assessment import ValidityAssessment
 
 MIN_CRUSHED_END_OVER_CRUSHING_FORCE = 0.999
-"""A search ended at crushing if its end, in units of the crushing force, is above this fraction."""
+"""A search ended because of crushing if its largest force, divided by the crushing force, exceeds this
+number."""
 
 
-def verdict_sentences(planes: PlanesOfMotion, assessment: Assessment) -> list[str]:
+def verdict_sentences(planes: PlanesOfMotion, assessment: ValidityAssessment) -> list[str]:
     """Sentences of the verdict on an arm, over the range of drag: whether the model applies, why thresholds
     are uncertain (if they are), flutter in the plane with the smaller flutter load, then in the second plane.
     The second plane is left out if the model applies at flutter but not under the load. If a search in the
     first plane failed, the list contains only the reason."""
-    plane = planes.first
+    plane = planes.first_to_flutter
     if plane.thresholds.failure_texts:
         return [
             "For some drags the thresholds could not be found: "
@@ -29,15 +30,15 @@ def verdict_sentences(planes: PlanesOfMotion, assessment: Assessment) -> list[st
             + "."
         ]
     headline, *others = _sentences_if_search_succeeded(planes, assessment)
-    known_planes = [plane for plane in (planes.first, planes.second) if plane is not None]
-    doubts = sorted({doubt for plane in known_planes for doubt in plane.thresholds.uncertainty_texts})
+    known_planes = [plane for plane in (planes.first_to_flutter, planes.second) if plane is not None]
+    doubts = sorted({doubt for plane in known_planes for doubt in plane.thresholds.uncertainty_reasons})
     doubt_sentences = [f"For some drags this is not certain: {'; '.join(doubts)}."] if doubts else []
     return [headline, *doubt_sentences, *others]
 
 
-def _sentences_if_search_succeeded(planes: PlanesOfMotion, assessment: Assessment) -> list[str]:
+def _sentences_if_search_succeeded(planes: PlanesOfMotion, assessment: ValidityAssessment) -> list[str]:
     """Sentences of the verdict if no search in the first plane failed: see `verdict_sentences`."""
-    plane = planes.first
+    plane = planes.first_to_flutter
     invalid_effects = assessment.effects_with(Validity.does_not_apply)
     if not invalid_effects:
         return [*_valid_arm_sentences(plane), *_second_plane_sentences(planes, "is")]
@@ -141,8 +142,8 @@ def _load_comparison_sentence(plane: PlaneOfMotion, flutter: RangeOverDrags, loa
 
 
 def _excess_text(F: float, flutter: RangeOverDrags) -> str:
-    """Excess of the force F over the range of the flutter load, as text: "20 to 30 % above", or as a factor,
-    "3 times", if the factor is larger than 2."""
+    """Excess of the force F over the range of the flutter load, as text: "20 to 30 % above", or "3 times" if
+    F is more than twice the largest flutter load."""
     low, high = (F / end for end in (flutter.high, flutter.low))
     return (
         f"{three_digit_range_text(low, high)} times"

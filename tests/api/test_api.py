@@ -21,7 +21,7 @@ from surveyed import only
 
 import rodsweep as rs
 from rodsweep.api import task_keywords
-from rodsweep.api.answers.picture import CachedShapeSolver, as_python_arguments
+from rodsweep.api.answers.picture import CachedCycleShapeSolver, as_python_arguments
 from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.cli import commands
 from rodsweep.config.base_config import Config
@@ -255,7 +255,7 @@ def test_numpy_scalars_are_taken_by_every_door():
     assert portrait.results.F_max == 20
     assert rs.Rod(**ROD | {"k1": np.longdouble(ROD["k1"])}) == rod
     assert rs.Arm(**SILICONE, poisson=np.array(0.49)) == rs.Arm(**SILICONE, poisson=0.49)
-    with pytest.raises(rs.InputError, match="length = True is not one quantity"):
+    with pytest.raises(rs.InputError, match="length = True is not a single quantity"):
         rs.Arm(**SILICONE | {"length": np.bool_(True)})
 
 
@@ -263,7 +263,9 @@ def test_numpy_scalars_are_taken_by_every_door():
     "length", [np.array(["30"]), np.array("30"), b"30", np.array([True]), np.array(True), np.array([[0.1]])]
 )
 def test_an_array_or_a_text_without_unit_is_no_quantity_of_an_arm(length):
-    with pytest.raises(rs.InputError, match="length = .* is not one quantity; write a number with a unit"):
+    with pytest.raises(
+        rs.InputError, match="length = .* is not a single quantity; write a number with a unit"
+    ):
         rs.Arm(**SILICONE | {"length": length})
 
 
@@ -416,7 +418,10 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
         ),
         (rs.Arm, "viscosity is missing; write it as in rs.Arm("),
         (lambda: rs.Arm(viscosity="1 Pa s"), "length is missing; write it as in '10 cm'"),
-        (lambda: rs.Arm(**LOADED | {"length": ["10 cm"]}), "length = ['10 cm'] is not one quantity; write a"),
+        (
+            lambda: rs.Arm(**LOADED | {"length": ["10 cm"]}),
+            "length = ['10 cm'] is not a single quantity; write a",
+        ),
         (lambda: rs.Arm(**LOADED | {"length": 10**400}), "length = 1000"),
         (lambda: rs.Arm(**LOADED | {"length": "1e300 km"}), "length = '1e300 km', with this section"),
         (
@@ -527,7 +532,7 @@ def test_a_cycle_without_stored_shapes_is_drawn_with_the_shapes_that_it_would_ha
 
 def test_a_picture_solves_shapes_once_however_often_it_is_drawn():
     asked = []
-    shapes = CachedShapeSolver(lambda view, numbers: asked.append(numbers) or view)
+    shapes = CachedCycleShapeSolver(lambda view, numbers: asked.append(numbers) or view)
     assert shapes("file", [1, 2]) == shapes("file", (1, 2)) == "file"
     assert asked == [[1, 2]]
 

@@ -35,7 +35,7 @@ from rodsweep.bench.spectrum.arm_spectra import (
 )
 from rodsweep.bench.spectrum.rodsweep_and_exact_spectra import (
     CERTIFIED_NAME,
-    KRYLOV_SCHUR,
+    KRYLOV_SCHUR_NAME,
     MODE_COUNT,
     UNCERTIFIED_NAME,
     exact_spectrum,
@@ -45,7 +45,7 @@ from rodsweep.bench.spectrum.rodsweep_and_exact_spectra import (
 from rodsweep.bench.spectrum.study import (
     ELEMENT_ORDERS,
     HARD_RODS,
-    SPECTRUM_RACE,
+    SPECTRUM_RACE_NAME,
     hard_rod_table,
     krylov_schur,
     measure_hard_rods,
@@ -126,7 +126,7 @@ def test_table_of_arms_has_time_and_error_of_every_method(monkeypatch):
     bad = TimedMethod("coarse", "3", "a", lambda arm: np.ones(MODE_COUNT, complex))
     lines = arm_table(measure_arm_spectra([bad], 1), 1).splitlines()
     assert lines[2] == "| method | cone |"
-    for name in (UNCERTIFIED_NAME, CERTIFIED_NAME, KRYLOV_SCHUR):
+    for name in (UNCERTIFIED_NAME, CERTIFIED_NAME, KRYLOV_SCHUR_NAME):
         (line,) = (line for line in lines if line.startswith(f"| {name} |"))
         assert re.fullmatch(r"\d+\.\d\d ms, \de-1\d", line.split(" | ")[1].rstrip(" |"))
     assert lines[-1].startswith("| coarse | no better than 1e+")
@@ -149,7 +149,7 @@ def test_race_takes_all_in_turn_and_times_the_second_of_two(monkeypatch):
     raced = time_runs([lambda: order.append("a"), lambda: order.append("b") or 7], [2, 1])
     assert order == ["a", "b", "a", "a", "b", "b", "a", "a"]
     assert [timed.outcome for timed in raced] == [None, 7]
-    assert [len(timed.seconds) for timed in raced] == [2, 1]
+    assert [len(timed.processor_seconds) for timed in raced] == [2, 1]
 
 
 def test_race_makes_long_runs_once_a_round(monkeypatch):
@@ -183,9 +183,9 @@ def test_study_of_the_spectrum_has_a_row_for_every_method(monkeypatch, tmp_path)
     exact = TimedMethod("a peer", "7", "g", partial(rodsweep_spectrum, certify=False))
     study = run_spectrum_study(
         quick=True,
-        peers=PeerContribution({SPECTRUM_RACE: [exact]}, skipped_peer_sentences=["Another is skipped."]),
+        peers=PeerContribution({SPECTRUM_RACE_NAME: [exact]}, skipped_peer_sentences=["Another is skipped."]),
     )
-    for name in ("rodsweep, certificate on", "rodsweep, certificate off", KRYLOV_SCHUR, "a peer"):
+    for name in ("rodsweep, certificate on", "rodsweep, certificate off", KRYLOV_SCHUR_NAME, "a peer"):
         assert study.text.count(f"| {name} |") == (2 if name == "a peer" else 3)
         assert f"| {name} | 4 |" in study.text
     assert study.text.endswith("\n\nAnother is skipped.")
@@ -259,7 +259,7 @@ def test_command_without_the_folder_times_rodsweep_alone_and_says_who_is_left_ou
     assert "Chebyshev" in sentence
     assert "--peers CHECKOUT/benchmarks" in sentence
     methods = re.findall(r"^\| ([^|]*) \| 20 \|", text, re.MULTILINE)
-    assert methods == ["rodsweep, certificate off", "rodsweep, certificate on", KRYLOV_SCHUR]
+    assert methods == ["rodsweep, certificate off", "rodsweep, certificate on", KRYLOV_SCHUR_NAME]
 
 
 @pytest.mark.long
@@ -313,7 +313,7 @@ def test_a_folder_of_this_name_that_is_no_checkouts_is_left_alone(monkeypatch, t
     (tmp_path / "benchmarks").mkdir()
     for name in {"pyproject.toml", "benchmarks/__init__.py"} - {missing}:
         (tmp_path / name).touch()
-    monkeypatch.setattr(bench_peers, "CHECKOUT_FOLDER", tmp_path)
+    monkeypatch.setattr(bench_peers, "RODSWEEP_CHECKOUT_FOLDER", tmp_path)
     assert peer_package(None) is None
 
 

@@ -10,8 +10,8 @@ from surveyed import survey_only
 from rodsweep.bench.limit_cycle.default_integrator import DEFAULT_INTEGRATOR, IntegrationTask
 from rodsweep.bench.limit_cycle.settling import SettlingMethod, settling_table
 from rodsweep.bench.limit_cycle.study import (
-    CYCLE_FOLLOWING_RACE,
-    SETTLING_TO_CYCLE_RACE,
+    CYCLE_FOLLOWING_RACE_NAME,
+    SETTLING_TO_CYCLE_RACE_NAME,
     cycle_following_table,
     run_limit_cycle_study,
     time_at_error,
@@ -170,9 +170,9 @@ def test_the_benchmark_times_peers_beside_rodsweep(monkeypatch):
     failing = [TimedMethod("failing", tolerance, "failing", gives_up) for tolerance in ("1e-05", "1e-07")]
     further = Measurement("30", "continuation", "p = 14", 1.0, 1e-6)
     peers = PeerContribution(
-        contenders={
-            CYCLE_FOLLOWING_RACE: double.following_contenders() + failing,
-            SETTLING_TO_CYCLE_RACE: double.settling_contenders() + failing,
+        contenders_by_race={
+            CYCLE_FOLLOWING_RACE_NAME: double.following_contenders() + failing,
+            SETTLING_TO_CYCLE_RACE_NAME: double.settling_contenders() + failing,
         },
         section_functions=[lambda rounds: ([f"a section of {rounds}"], [further])],
         contender_notes=["A note."],

@@ -27,7 +27,7 @@ from rodsweep.bench.sweep.launch import (
 from rodsweep.bench.sweep.study import (
     TWO_COMMAND_CASE,
     added_point_cost_table,
-    instant_table,
+    instant_solver_table,
     run_sweep_study,
     sweep_measurement,
 )
@@ -156,7 +156,7 @@ def test_growth_is_that_of_each_step():
     assert "| no solver | 2 ranks | 10000 | 100000 | 10 | 62 | +0.0 | +0.0 | 1.00 |" in text
     killed = row(KILLED, 10**5, 1, 1.0, [10**8])
     assert added_point_cost_table([killed]).endswith("---|")
-    text = instant_table([*rows, killed])
+    text = instant_solver_table([*rows, killed])
     assert "| no solver | 100000 | 2 | 1.50 | 30.0 | 100.0 | 200.0 | 62.0 |  |" in text
     assert "| killed | 100000 | 1 | 1.00 | 10.0 | 100.0 |  | 62.0 | 74.0 |" in text
 

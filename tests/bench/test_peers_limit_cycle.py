@@ -25,7 +25,7 @@ from benchmarks.limit_cycle.continuation import (
 )
 from benchmarks.limit_cycle.integrators import CVODE, CVODE_SKIPPED, installed_families
 from rodsweep.bench.limit_cycle.default_integrator import DEFAULT_INTEGRATOR, IntegrationTask
-from rodsweep.bench.limit_cycle.study import CYCLE_FOLLOWING_RACE, SETTLING_TO_CYCLE_RACE
+from rodsweep.bench.limit_cycle.study import CYCLE_FOLLOWING_RACE_NAME, SETTLING_TO_CYCLE_RACE_NAME
 from rodsweep.bench.limit_cycle.sweeping import ACCURACY, MeshConvergedCycle
 from rodsweep.bench.limit_cycle.swept_rods import RODS
 from rodsweep.bench.limit_cycle.tracking import (
@@ -114,16 +114,18 @@ def test_order_of_the_errors(name):
 def test_cvode_is_left_out_in_one_sentence_where_it_is_not_installed(monkeypatch, tmp_path):
     monkeypatch.setattr(cycle_peers, "optional_module", lambda _: None)
     found = peers(quick=True, folder=tmp_path)
-    assert CVODE not in [contender.method for contender in found.contenders_of_race(CYCLE_FOLLOWING_RACE)]
+    assert CVODE not in [
+        contender.method for contender in found.contenders_of_race(CYCLE_FOLLOWING_RACE_NAME)
+    ]
     assert found.skipped_peer_sentences[0] == CVODE_SKIPPED
 
 
 def test_every_integrator_takes_part_where_it_is_installed(tmp_path):
     found = peers(quick=True, folder=tmp_path)
-    assert {c.method for c in found.contenders_of_race(CYCLE_FOLLOWING_RACE)} == {
+    assert {c.method for c in found.contenders_of_race(CYCLE_FOLLOWING_RACE_NAME)} == {
         family.name for family in installed_families()
     }
-    assert {c.method for c in found.contenders_of_race(SETTLING_TO_CYCLE_RACE)} == {
+    assert {c.method for c in found.contenders_of_race(SETTLING_TO_CYCLE_RACE_NAME)} == {
         f.name for f in installed_families() if f.settling_tolerances
     }
     assert (AUTO_SKIPPED in found.skipped_peer_sentences) == (not found.section_functions)

@@ -10,9 +10,14 @@ from benchmarks.spectrum.eigensolvers import (
     dense_inverse,
     displacement_elements,
 )
-from rodsweep.bench.spectrum.arm_spectra import ARM_RODS, ARM_SPECTRUM_RACE, UncachedArms, exact_arm_spectrum
+from rodsweep.bench.spectrum.arm_spectra import (
+    ARM_RODS,
+    ARM_SPECTRUM_RACE_NAME,
+    UncachedArms,
+    exact_arm_spectrum,
+)
 from rodsweep.bench.spectrum.rodsweep_and_exact_spectra import MODE_COUNT, exact_spectrum, relative_error
-from rodsweep.bench.spectrum.study import HARD_RODS, SPECTRUM_RACE
+from rodsweep.bench.spectrum.study import HARD_RODS, SPECTRUM_RACE_NAME
 from rodsweep.bench.study import grouped_by_fields
 from rodsweep.model.rod import Rod
 
@@ -48,9 +53,9 @@ def test_forms_without_stiffness_keep_their_digits_where_the_plain_ones_lose_the
 
 
 def test_every_peer_takes_part_at_all_of_its_sizes(tmp_path):
-    found = peers(quick=True, folder=tmp_path).contenders_of_race(SPECTRUM_RACE)
+    found = peers(quick=True, folder=tmp_path).contenders_of_race(SPECTRUM_RACE_NAME)
     for peer in PEERS:
         assert [int(c.setting) for c in found if c.method == peer.name] == list(peer.sizes)
-    assert {c.method for c in peers(quick=True, folder=tmp_path).contenders_of_race(ARM_SPECTRUM_RACE)} < {
-        peer.name for peer in PEERS
-    }
+    assert {
+        c.method for c in peers(quick=True, folder=tmp_path).contenders_of_race(ARM_SPECTRUM_RACE_NAME)
+    } < {peer.name for peer in PEERS}

@@ -21,7 +21,7 @@ from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 from rodsweep.solve.changes.thresholds import empty_thresholds
 from rodsweep.verdict.arm import arm_report
 from rodsweep.verdict.checks import THRESHOLD_DECREASE_PER_INERTIA_PHASE, relative_rubber_stiffening
-from rodsweep.verdict.flutter import ThresholdsOverDrags, ThresholdsWithDrag
+from rodsweep.verdict.flutter_over_drags import ThresholdsOverDrags, ThresholdsWithDrag
 from rodsweep.verdict.load_texts import LoadFormatter
 from rodsweep.verdict.planes import PlaneOfMotion, PlanesOfMotion, with_absolute_load
 

@@ -10,7 +10,7 @@ from rodsweep.determinant.arm.completeness import (
     COMPLETENESS_SETTINGS,
     points_right_of_hull,
     prove_complete,
-    remainder_of_sum,
+    sum_over_unknown_eigenvalues,
 )
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.hull.hull import hull_of
@@ -77,7 +77,9 @@ def test_every_term_is_positive_in_the_hull_and_as_large_as_stated_right_of_the_
     assert (phi.real >= 0).all()
     rod = Rod(F=5.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5)
     none, level = np.empty(0, complex), ArmDeterminant(rod).propagators_for(points[-1])
-    least = remainder_of_sum(line, none, np.empty(0), hull, points, level).min_unknown_contribution
+    least = sum_over_unknown_eigenvalues(
+        line, none, np.empty(0), hull, points, level
+    ).min_unknown_contribution
     right = v.real >= line
     contribution = np.where(v.imag == 0, 1, 2) * phi.real
     assert least <= contribution[right].min() * (1 + 1e-12)

@@ -12,9 +12,9 @@ from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.hull.averaged_weight import regions_from_averaged_weights
 from rodsweep.determinant.arm.hull.hull import hull_of
 from rodsweep.determinant.arm.hull.region import EigenvalueHull, hull_distance_and_normal
+from rodsweep.determinant.arm.mesh_eigenvalue_refinement import refine_mesh_eigenvalues
 from rodsweep.determinant.arm.newton import refine_eigenvalue_and_error, root_error
-from rodsweep.determinant.arm.roots import refine_mesh_eigenvalues
-from rodsweep.determinant.certificate.eigenvalue_box import eigenvalue_box, frequency_bound
+from rodsweep.determinant.certificate.box_of_all_eigenvalues import box_of_all_eigenvalues, frequency_bound
 from rodsweep.determinant.certificate.winding_number import count_right_of as count_of_uniform
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.material.rod_material import RodMaterial
@@ -71,7 +71,7 @@ def test_hull_of_a_uniform_rod_has_the_box_of_the_closed_form(rod):
     hull = hull_of(rod)
     assert hull.c == 0
     assert hull.a == pytest.approx(1.05 * frequency_bound(rod) ** 0.5, rel=1e-9)
-    for own, closed in zip(hull.box(30.0), eigenvalue_box(rod, 30.0), strict=True):
+    for own, closed in zip(hull.box(30.0), box_of_all_eigenvalues(rod, 30.0), strict=True):
         assert closed <= own <= 1.15 * closed
 
 

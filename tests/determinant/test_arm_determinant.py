@@ -10,7 +10,7 @@ from rodsweep.determinant.arm.elements.evaluation import (
     fill_propagator_and_derivative,
     powers_and_derivatives,
 )
-from rodsweep.determinant.arm.elements.minor_rates import PADDED_LENGTH
+from rodsweep.determinant.arm.elements.minor_rates import PROPAGATOR_LENGTH
 from rodsweep.determinant.arm.elements.propagators import element_propagators
 from rodsweep.determinant.value import scaled_determinant
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
@@ -162,7 +162,7 @@ def test_left_out_powers_of_w_do_not_matter(arm, z):
         n = np.arange(terms)[:, None]
         power = np.clongdouble(z) ** n
         slope = n * np.clongdouble(z) ** np.maximum(n - 1, 0)
-        found = np.empty((4, PADDED_LENGTH))
+        found = np.empty((4, PROPAGATOR_LENGTH))
         for polynomial in polynomials:
             fill_propagator_and_derivative(polynomial, powers, found)
             for values, weight in ((found[:2], power), (found[2:], slope)):

@@ -193,5 +193,5 @@ def test_no_exponent_of_an_element_exceeds_its_limit(name):
         squares += 2 * np.sqrt(W * abs(g * nu * gamma2 * c3) + W**2 * c2 * c3 * gamma2 * gamma3)
         _, weights = np.polynomial.legendre.leggauss(squares.shape[1])
         exponents = np.sqrt(squares) @ weights / 2 * elements.lengths
-        limit = ARM_ELEMENT_SETTINGS.max_exponent_excess * ARM_ELEMENT_SETTINGS.max_exponent
+        limit = ARM_ELEMENT_SETTINGS.max_exponent_excess_factor * ARM_ELEMENT_SETTINGS.max_exponent
         assert exponents.max() <= limit * (1 + 1e-12)

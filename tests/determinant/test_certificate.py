@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from rods import rod_of
 
+from rodsweep.determinant.certificate.box_of_all_eigenvalues import box_of_all_eigenvalues
 from rodsweep.determinant.certificate.dominance import (
     dominant_prefactor_and_exponent,
     has_dominant_exponential,
 )
-from rodsweep.determinant.certificate.eigenvalue_box import eigenvalue_box
 from rodsweep.determinant.certificate.winding_number import (
     count_right_of,
     phase_change,
@@ -87,14 +87,14 @@ def test_box_holds_every_reference_eigenvalue(reference_spectra):
     for point in reference_spectra:
         rod, w = rod_and_eigenvalues(point)
         for value in w:
-            real, imag = eigenvalue_box(rod, max(0.0, -value.real))
+            real, imag = box_of_all_eigenvalues(rod, max(0.0, -value.real))
             assert value.real <= real
             assert abs(value.imag) <= imag
 
 
 def test_box_is_nearly_sharp():
     """At k1 = k2 = 1e4, gamma3 = 1e-4, F = 2000 the rightmost eigenvalue has real part 965025.548182."""
-    real, _ = eigenvalue_box(CROWDED)
+    real, _ = box_of_all_eigenvalues(CROWDED)
     assert 965025 < real < 1.05e6
 
 
@@ -136,7 +136,7 @@ def test_long_strides_give_the_phase_of_short_steps():
     for rng, rod in random_rods(400):
         if rod.F < 0:
             continue
-        real, imag = eigenvalue_box(rod, 1.0)
+        real, imag = box_of_all_eigenvalues(rod, 1.0)
         corner, end = complex(real, imag), complex(-(10 ** rng.uniform(0, 4)), imag)
         for start, stop in ((complex(real, 0.0), corner), (end, corner)):
             change, used = phase_change(start, stop, rod.coefficients)

@@ -7,25 +7,28 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from rodsweep.determinant.certificate.covering import (
-    box_outcome_and_costs,
-    cover_with_boxes,
-    distance_from_zero_bound,
-)
-from rodsweep.determinant.certificate.discs import bidisc_centre, bound_on_bidisc
-from rodsweep.determinant.certificate.eigenvalue_box import (
+from rodsweep.determinant.certificate.box_of_all_eigenvalues import (
     frequency_bound,
     frequency_bound_on_path,
     zero_free_radius,
 )
-from rodsweep.determinant.certificate.first_crossing_boxes import first_crossing_boxes, path_intervals
+from rodsweep.determinant.certificate.covering import (
+    box_outcome_and_costs,
+    distance_from_zero_bound,
+    zeros_and_open_boxes_of_covering,
+)
+from rodsweep.determinant.certificate.discs import bidisc_centre, bound_on_bidisc
+from rodsweep.determinant.certificate.first_crossing_boxes import (
+    first_crossing_boxes,
+    path_intervals_of_bounded_change,
+)
 from rodsweep.determinant.parameter_path import (
     ParameterPath,
     coefficients_at,
     determinant_value_on_path,
     dispersion_coefficient_derivatives,
 )
-from rodsweep.determinant.roots.newton import eigenvalue_by_newton
+from rodsweep.determinant.roots.newton import eigenvalue_with_slope_and_error
 from rodsweep.determinant.value import scaled_determinant
 from rodsweep.model.rod import Rod
 
@@ -48,7 +51,7 @@ PATHS = [
 
 @pytest.mark.parametrize("path", PATHS)
 def test_derivative_along_a_path_is_that_of_the_determinant(path):
-    p = path.coordinate(getattr(path.rod, path.name))
+    p = path.coordinate(getattr(path.rod, path.parameter_name))
     w = complex(-3.0, 41.0)
     assert coefficients_at(p, path.origin, path.direction) == pytest.approx(path.rod.coefficients, rel=1e-12)
     D, D_w, D_p, S, _ = determinant_value_on_path(w, path.rod.coefficients, path.direction)
@@ -65,7 +68,7 @@ def test_derivative_along_a_path_is_that_of_the_determinant(path):
 
 @pytest.mark.parametrize("path", PATHS)
 def test_a_small_error_of_the_path_variable_becomes_that_of_the_parameter(path):
-    value = getattr(path.rod, path.name)
+    value = getattr(path.rod, path.parameter_name)
     p = path.coordinate(value)
     assert path.value_and_error(p, 0.0) == (pytest.approx(value, rel=1e-15), 0.0)
     error = 1e-6 * abs(p)
@@ -78,7 +81,7 @@ def test_a_small_error_of_the_path_variable_becomes_that_of_the_parameter(path):
 def test_bound_on_a_bidisc_holds_for_the_determinant_in_complex_p(path):
     """Against D with complex coefficients in mpmath, on the distinguished boundary, where the maximum is."""
     rng = np.random.default_rng(3)
-    p = path.coordinate(getattr(path.rod, path.name))
+    p = path.coordinate(getattr(path.rod, path.parameter_name))
     c, direction = path.rod.coefficients, path.direction
     sharpest = inf
     for eta in (2.0, 190.0, 2500.0):
@@ -103,7 +106,7 @@ def test_bound_on_a_bidisc_holds_for_the_determinant_in_complex_p(path):
 
 
 def complex_determinant(w, path, p):
-    """D at complex w and p, from the formula in `rodsweep.determinant.value_and_error`, in 30 digits."""
+    """D at complex w and p, from the formula in `rodsweep.determinant.value`, in 30 digits."""
     with mp.workdps(30):
         w, p = mp.mpmathify(complex(w)), mp.mpmathify(complex(p))
         F, nu, c2, gamma3 = (mp.mpf(a) + p * b for a, b in zip(path.origin, path.direction, strict=True))
@@ -133,10 +136,14 @@ def test_distance_of_a_parallelogram_from_zero():
 def test_no_box_with_a_crossing_is_called_empty_and_regular_ones_hold_one_at_most(path):
     """Boxes about known crossings of a path, of random size and offset."""
     rng = np.random.default_rng(11)
-    value = getattr(path.rod, path.name)
-    shares = (1.01, 2.0) if path.name == "k1" else (0.5, min(1.5, 0.99 * path.rod.k1 / abs(path.rod.F)))
+    value = getattr(path.rod, path.parameter_name)
+    shares = (
+        (1.01, 2.0) if path.parameter_name == "k1" else (0.5, min(1.5, 0.99 * path.rod.k1 / abs(path.rod.F)))
+    )
     low, high = sorted(path.coordinate(share * value) for share in shares)
-    zeros, left, _ = cover_with_boxes(first_crossing_boxes(path, low, high), path.origin, path.direction)
+    zeros, left, _ = zeros_and_open_boxes_of_covering(
+        first_crossing_boxes(path, low, high), path.origin, path.direction
+    )
     assert not left
     for eta, p, *_ in zeros:
         for scale in 10.0 ** rng.uniform(-6, 0, 20):
@@ -157,8 +164,8 @@ def test_no_box_with_a_crossing_is_called_empty_and_regular_ones_hold_one_at_mos
 
 @pytest.mark.parametrize("path", PATHS)
 def test_a_priori_bounds_over_a_path_hold_at_each_of_its_rods(path):
-    value = getattr(path.rod, path.name)
-    shares = (1.01, 2.5) if path.name == "k1" else (0.4, 0.99)
+    value = getattr(path.rod, path.parameter_name)
+    shares = (1.01, 2.5) if path.parameter_name == "k1" else (0.4, 0.99)
     ends = sorted(path.coordinate(share * value) for share in shares)
     largest = frequency_bound_on_path(path, *ends)
     radius = zero_free_radius(path, *ends, 1e3)
@@ -173,7 +180,7 @@ def test_a_priori_bounds_over_a_path_hold_at_each_of_its_rods(path):
 
 def test_slabs_reach_from_end_to_end_and_grow_finer_towards_a_crushed_rod():
     path = ParameterPath(Rod(F=0.0, k1=100.0, k2=1e4, gamma3=1e-4), "F")
-    parts = path_intervals(path, 0.0, 99.9999)
+    parts = path_intervals_of_bounded_change(path, 0.0, 99.9999)
     assert parts[0][0] == 0.0
     assert parts[-1][1] == 99.9999
     assert all(a[1] == b[0] for a, b in zip(parts[:-1], parts[1:], strict=True))
@@ -184,16 +191,18 @@ def test_slabs_reach_from_end_to_end_and_grow_finer_towards_a_crushed_rod():
 def test_a_path_of_one_rounding_is_one_interval(ends):
     """The steps along it were 0, and their number had no end."""
     path = ParameterPath(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), "F")
-    assert path_intervals(path, *ends) == [ends]
+    assert path_intervals_of_bounded_change(path, *ends) == [ends]
 
 
 def test_an_eigenvalue_and_its_slope_along_the_force():
     path = ParameterPath(RODS[0], "F")
-    w, slope, error = eigenvalue_by_newton(complex(-60, 150), path.rod.coefficients, path.direction)
+    w, slope, error = eigenvalue_with_slope_and_error(
+        complex(-60, 150), path.rod.coefficients, path.direction
+    )
     assert error < 1e-11
     h = 1e-4
     after, before = (
-        eigenvalue_by_newton(
+        eigenvalue_with_slope_and_error(
             w + s * slope, coefficients_at(30 + s, path.origin, path.direction), path.direction
         )[0]
         for s in (h, -h)

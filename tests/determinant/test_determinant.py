@@ -11,7 +11,11 @@ from rodsweep.determinant.parameter_path import determinant_value_on_path
 from rodsweep.determinant.roots.newton import refine_eigenvalue
 from rodsweep.determinant.roots.roots import root_error_and_scales
 from rodsweep.determinant.rounding_at_root import rounding_error_at_root
-from rodsweep.determinant.value import DETERMINANT_SETTINGS, eigenvalue_error_and_scales, scaled_determinant
+from rodsweep.determinant.value import (
+    DETERMINANT_SETTINGS,
+    root_error_w_scale_and_wave_number,
+    scaled_determinant,
+)
 from rodsweep.model.rod import Rod
 
 
@@ -159,7 +163,7 @@ def test_nothing_is_lost_where_exponents_vanish(rod, place):
 def test_the_length_of_newtons_correction_does_not_shrink_where_exponents_vanish():
     for rod in PULLS_AND_PUSHES:
         beside, there = (
-            eigenvalue_error_and_scales(complex(at(d, *rod)[0]), rod_of(*rod).coefficients)[1]
+            root_error_w_scale_and_wave_number(complex(at(d, *rod)[0]), rod_of(*rod).coefficients)[1]
             for d in (0.3, 1e-14)
         )
         assert there > beside / 10
@@ -183,12 +187,12 @@ def test_filament_roots_are_those_of_the_cantilever():
     for n in range(1, 5):
         b = mp.findroot(lambda b: mp.cosh(b) * mp.cos(b) + 1, (n - 0.5) * mp.pi)
         w = float(-(b**4))
-        assert eigenvalue_error_and_scales(complex(w), rod.coefficients)[0] < 1e-13 * abs(w)
+        assert root_error_w_scale_and_wave_number(complex(w), rod.coefficients)[0] < 1e-13 * abs(w)
 
 
 def test_newton_correction_is_the_distance_to_the_root():
     rod = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
     root = complex(reference.refine(mp.mpc(-54.3, 145.7), 30, 1e4, 1e4, 1e-4))
     for distance in (1e-3, 1e-6j, 1e-9 - 1e-9j):
-        found = eigenvalue_error_and_scales(root + distance, rod.coefficients)[0]
+        found = root_error_w_scale_and_wave_number(root + distance, rod.coefficients)[0]
         assert found == pytest.approx(abs(distance), rel=1e-2)

@@ -16,7 +16,7 @@ import rodsweep as rs
 from rodsweep.errors import InputError
 from rodsweep.explore.page_state import PageState
 from rodsweep.explore.pictures.card import STABLE_COLOUR
-from rodsweep.explore.pictures.numbers_table import number_text
+from rodsweep.explore.pictures.numbers_table import first_element_text
 
 pytestmark = needs_browser
 SOLVED = "Bokeh.documents[0].get_model_by_name('working').text == ''"
@@ -73,7 +73,7 @@ def test_the_numbers_on_the_page_are_those_of_the_solver(browser):
         (spectrum, ("growth_rate", "frequency", "unstable_count")),
         (thresholds, ("F_onset", "F_hopf", "hopf_frequency")),
     ):
-        assert {n: shown[n] for n in names} == {n: number_text(answer.data[n].values) for n in names}
+        assert {n: shown[n] for n in names} == {n: first_element_text(answer.data[n].values) for n in names}
     # The start of a cycle differs between the page, which had other rods before, and a new process.
     for name in ("period", "tip_y_max", "injection_mean", "dissipation_mean"):
         assert float(shown[name]) == pytest.approx(float(cycle.data[name]), rel=1e-6)
@@ -161,7 +161,7 @@ def test_a_click_in_the_diagram_moves_the_point_and_everything_follows(browser):
     F, k2 = (float(browser.model(f"{name}_field", "value")) for name in ("F", "k2"))
     assert (F, k2) == (pytest.approx(55, abs=1), pytest.approx(300, rel=0.1))
     answer = rs.Rod(F=F, k1=1e4, k2=k2, gamma3=0.01).spectrum()
-    assert numbers(browser)["growth_rate"] == number_text(answer.growth_rate)
+    assert numbers(browser)["growth_rate"] == first_element_text(answer.growth_rate)
     browser.wait_for(f"location.search.startsWith('?tab=rod&F={F:g}&')")  # written when the page has rested
 
 
@@ -240,7 +240,7 @@ def test_a_slider_that_never_rests_ends_at_its_last_value(browser):
     solved(browser)
     F = float(browser.model("F_field", "value"))
     assert pytest.approx(59.0) == F
-    assert numbers(browser)["growth_rate"] == number_text(ROD.replace(F=F).spectrum().growth_rate)
+    assert numbers(browser)["growth_rate"] == first_element_text(ROD.replace(F=F).spectrum().growth_rate)
 
 
 def test_numbers_and_pictures_of_an_earlier_state_fade_until_they_are_solved(browser):
@@ -314,7 +314,7 @@ def test_a_page_that_was_left_ends_its_solves_and_the_way_back_leads_to_a_page_t
         change(other, "F_max", "60")
         change(other, "F_field", "48")
         other.wait_for(f"Bokeh.documents[0].is_idle && {SOLVED}")
-        assert numbers(other)["growth_rate"] == number_text(ROD.replace(F=48).spectrum().growth_rate)
+        assert numbers(other)["growth_rate"] == first_element_text(ROD.replace(F=48).spectrum().growth_rate)
         assert other.complaints() == []
 
 

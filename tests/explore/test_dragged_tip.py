@@ -1,5 +1,6 @@
 """A drag of the arm's tip on the page, without a browser: the bent arm, and the motion after it is let go."""
 
+from dataclasses import fields
 from io import BytesIO
 
 import numpy as np
@@ -10,15 +11,16 @@ from PIL import Image
 import rodsweep as rs
 from rodsweep.explore.page import Page
 from rodsweep.explore.page_state import PageState
-from rodsweep.explore.pictures.card import BLANK_TITLE
+from rodsweep.explore.pictures.card import BLANK_TITLE_LINE
 from rodsweep.explore.pictures.moving_arm import SCREEN_SECONDS_PER_PERIOD
 from rodsweep.explore.solving.dragged_tip import motion_in_page_units
-from rodsweep.explore.solving.request_inputs import INSTANT_REQUEST_KINDS
+from rodsweep.explore.solving.request_inputs import REQUEST_KINDS_AFTER_EVERY_CHANGE
 from rodsweep.explore.solving.requests import SHAPE_COUNT, Reply, SolveRequest, answer_to
 from rodsweep.post.figures.cycle.animation import motion_film
 from rodsweep.post.figures.cycle.tip_path import SEGMENTS_BETWEEN_SHAPES, smooth_tip_path
+from rodsweep.tasks.released_motion import ReleasedMotion
 
-KINDS = (*INSTANT_REQUEST_KINDS, "bent", "motion", "film")
+KINDS = (*REQUEST_KINDS_AFTER_EVERY_CHANGE, "bent", "motion", "film")
 
 
 def drag(page: Page, phase: str, x: float, y: float) -> None:
@@ -92,7 +94,7 @@ def test_a_change_of_the_rod_forgets_the_motion():
     run_callbacks(page.document)
     picture = page.contents.beating
     assert (len(picture.motion_source.data["x"]), len(picture.bent_source.data["x"])) == (0, 0)
-    assert picture.card.figure.title.text == BLANK_TITLE
+    assert picture.card.figure.title.text == BLANK_TITLE_LINE
 
 
 def test_an_answer_to_another_place_of_the_tip_is_not_shown():
@@ -142,7 +144,10 @@ def test_the_film_of_an_arm_that_was_let_go_is_that_of_its_motion():
 
 
 def test_the_film_of_a_motion_is_in_the_units_of_the_page():
-    found = {"x": np.array([[0.0, 1.0], [0.0, 0.9]]), "y": np.array([[0.0, 0.1], [0.0, 0.2]]), "step": 0.5}
+    x, y = np.array([[0.0, 1.0], [0.0, 0.9]]), np.array([[0.0, 0.1], [0.0, 0.2]])
+    found = dict.fromkeys(field.name for field in fields(ReleasedMotion)) | {"x": x, "y": y}
+    assert found.keys() >= {"shape_interval"}
+    found["shape_interval"] = 0.5
     state = PageState(tab="arm")
     motion = motion_in_page_units(state, found)
     assert (motion.length, motion.units) == (pytest.approx(10), ("cm", "s"))

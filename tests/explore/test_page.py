@@ -24,11 +24,11 @@ from rodsweep.explore.pictures.diagram import (
     unstable_count_words,
 )
 from rodsweep.explore.pictures.growth_and_branches import threshold_title
-from rodsweep.explore.pictures.numbers_table import NumbersTable, number_text
+from rodsweep.explore.pictures.numbers_table import NumbersTable, first_element_text
 from rodsweep.explore.slider_scales import PictureAxis
-from rodsweep.explore.solving.diagram_curves_and_counts import DiagramCurve
+from rodsweep.explore.solving.diagram_curves_and_unstable_counts import DiagramCurve
 from rodsweep.explore.solving.diagrams import CRUSHED_UNSTABLE_COUNT, UNKNOWN_UNSTABLE_COUNT
-from rodsweep.explore.solving.request_inputs import INSTANT_REQUEST_KINDS
+from rodsweep.explore.solving.request_inputs import REQUEST_KINDS_AFTER_EVERY_CHANGE
 from rodsweep.explore.solving.requests import Reply, SolveRequest, answer_to, answer_variables
 from rodsweep.explore.templates_and_texts import SOLVE_STOPPED_SENTENCE, template_text
 from rodsweep.verdict import relative_load
@@ -41,7 +41,7 @@ parameters: {F: {start: 0, stop: 60, num: 31}, k1: [100, 200, 400], k2: 1.0e4, g
 class ImmediateSolvers:
     """Answers at once, in this process. requests: all that were asked."""
 
-    def __init__(self, kinds: tuple[str, ...] = INSTANT_REQUEST_KINDS):
+    def __init__(self, kinds: tuple[str, ...] = REQUEST_KINDS_AFTER_EVERY_CHANGE):
         self.kinds = kinds
         self.requests: list[SolveRequest] = []
 
@@ -74,7 +74,7 @@ def page_with(
     solvers: ImmediateSolvers, query: str = "", state: PageState | None = None, stored=None
 ) -> Page:
     page = Page(Document(), solvers, state or PageState(), stored)
-    page.open(query)
+    page.show_address(query)
     run_callbacks(page.document)
     return page
 
@@ -93,7 +93,7 @@ def test_pictures_and_numbers_are_those_of_the_solver():
     source = page.contents.spectrum.source.data
     assert source["growth"] == pytest.approx(spectrum.growth_rate, rel=1e-12)
     assert page.contents.spectrum.card.figure.title.text == "2 unstable modes, certified"
-    assert shown(page)["F_hopf"] == number_text(thresholds.F_hopf)
+    assert shown(page)["F_hopf"] == first_element_text(thresholds.F_hopf)
     assert float(shown(page)["period"]) == pytest.approx(cycle.period, rel=1e-7)
     shapes = page.contents.beating.shapes_source.data
     nodes = int(shapes["number"][0])
@@ -109,7 +109,7 @@ def test_a_change_of_the_load_asks_no_thresholds_again():
     assert {request.kind for request in solvers.requests} == {"spectrum", "cycle"}
     solvers.requests.clear()
     page.change({"k2": "200"})
-    assert {request.kind for request in solvers.requests} == set(INSTANT_REQUEST_KINDS)
+    assert {request.kind for request in solvers.requests} == set(REQUEST_KINDS_AFTER_EVERY_CHANGE)
 
 
 def test_a_rod_at_rest_says_so_above_the_straight_arm():
@@ -307,7 +307,7 @@ def test_a_long_solve_says_how_far_it_is_and_can_be_stopped():
 
 
 def test_stopping_the_folds_leaves_the_diagram_and_stopping_a_motion_the_arm():
-    solvers = ImmediateSolvers((*INSTANT_REQUEST_KINDS, "bent"))
+    solvers = ImmediateSolvers((*REQUEST_KINDS_AFTER_EVERY_CHANGE, "bent"))
     page = page_with(solvers)
     run_callbacks(page.document, seconds=True)
     diagram, *_ = [request for request in solvers.requests if request.kind == "diagram"]

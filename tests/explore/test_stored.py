@@ -13,7 +13,7 @@ from rodsweep.explore.answers_from_file import AnswersFromFile
 from rodsweep.explore.page import Page
 from rodsweep.explore.page_state_from_file import state_and_answers_from_file, stored_diagram
 from rodsweep.explore.pictures.card import TORUS_COLOUR
-from rodsweep.explore.pictures.numbers_table import number_text
+from rodsweep.explore.pictures.numbers_table import first_element_text
 from rodsweep.explore.solving.requests import answer_to
 from rodsweep.results.layouts.branch import SPECIAL_KINDS
 
@@ -59,7 +59,7 @@ def test_stored_cycles_are_drawn_and_not_solved_again(command):
     data = rs.open(command.directory / "result.h5").squeeze()
     assert page.state.rod["F"] == "40"
     assert not {"cycle", "branch"} & asked(solvers)
-    assert shown(page)["period"] == number_text(data["period"].sel(F=40).values)
+    assert shown(page)["period"] == first_element_text(data["period"].sel(F=40).values)
     picture = page.contents.beating.shapes_source.data
     assert picture["y"] == pytest.approx(data["shape_y"].sel(F=40).values.ravel(), abs=1e-7)
     drawn = page.contents.branches.cycle_source.data

@@ -216,7 +216,7 @@ def _beside(fine, rod):
         piece for curve in RodBranches(fine, rod).curves for piece in curve.stable_ranges
     )
     return intersection_of_ranges(
-        stable, RodBranches(fine, rod).straight_rod_stability_ranges(followed_range(fine))[0]
+        stable, RodBranches(fine, rod).straight_rod_stable_unstable_ranges(followed_range(fine))[0]
     )
 
 

@@ -122,7 +122,7 @@ def broken_promises(case: Case) -> list[str]:
             mesh, order=mesh.order + 6, interval_count=longer, stage_count=min(mesh.stage_count + 1, 6)
         )
         exact = newton_step(solve_by_newton(fine.interpolated_orbit(point.orbit), 1e-11, NewtonWorkspace()))
-        extrema, slope = CycleMotion(exact.orbit).tip_extrema, point.calibration.tip_y_sensitivity
+        extrema, slope = CycleMotion(exact.orbit).tip_extrema, point.calibration.relative_tip_y_sensitivity
         y, multipliers = extrema["tip_y_max"], nontrivial_multipliers_and_error(exact)[0]
         others = max(abs(getattr(stored.measures, name) - value) for name, value in extrema.items())
         errors = stored.errors
@@ -162,7 +162,8 @@ def test_branches_of_random_rods_keep_their_promises(first):
 def test_branch_is_exercised_where_it_is_steep_and_where_it_is_not():
     """The fold and the Hopf point of Fig. 2c's branch are steep; the promise there is another one."""
     slopes = [
-        point.calibration.tip_y_sensitivity for point in cycles_of(CASES["a fold close to the Hopf point"])
+        point.calibration.relative_tip_y_sensitivity
+        for point in cycles_of(CASES["a fold close to the Hopf point"])
     ]
     assert min(slopes) < 2
     assert max(slopes) > STEEP

@@ -96,11 +96,10 @@ def solve(rod, accuracy=1e-8):
 def least_condition(place, there):
     """What rounding leaves at least of the condition numbers at F*, which are infinite.
 
-    With c = |psi| |xi| and (psi, xi) = b (w1 - w2) of two close eigenvalues the condition number is
-    K = c/|b (w1 - w2)|, so that K |w1 - w2| = c/|b| beside F* is that of F*. There rounding of (A - w B) x
-    moves the two apart to |w1 - w2| = 2 sqrt(e/|b|), e = |(psi, rounding)|, which leaves
-    K = sqrt((c/|b|) (c/e))/2. c/e is the mesh's condition number over its `ModeVectors.rounding`, in both of
-    which (psi, xi) cancels.
+    With c = |psi| |xi| and (psi, xi) = b (w1 - w2) of two close eigenvalues the condition number is K = c/|b
+    (w1 - w2)|, so that K |w1 - w2| = c/|b| beside F* is that of F*. There rounding of (A - w B) x moves the
+    two apart to |w1 - w2| = 2 sqrt(e/|b|), e = |(psi, rounding)|, which leaves K = sqrt((c/|b|) (c/e))/2. c/e
+    is the condition number over its `ModeVectors.eigenvalue_rounding`, in both of which (psi, xi) cancels.
     """
     beside = rod_at(place, 1e-8)
     first, second = leading(beside, 4)[:2]
@@ -111,7 +110,8 @@ def least_condition(place, there):
 
 
 WORST_ROUNDING = 4.0
-"""In units of `ModeVectors.rounding`, the root of a sum of many squares: four standard deviations."""
+"""In units of `ModeVectors.eigenvalue_rounding`, the root of a sum of many squares: four standard
+deviations."""
 
 
 @pytest.mark.long

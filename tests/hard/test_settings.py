@@ -29,13 +29,13 @@ from numba.core.dispatcher import Dispatcher
 import rodsweep.determinant
 import rodsweep.discretization
 import rodsweep.solve
-from rodsweep.determinant.certificate.eigenvalue_box import box_from_sqrt_frequency_bound
+from rodsweep.determinant.certificate.box_of_all_eigenvalues import box_from_sqrt_frequency_bound
 from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.determinant.parameter_plane import ParameterPlane, PlaneAxis
 from rodsweep.determinant.stability_changes import crossings_between
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.explicit_system import ExplicitSystem
-from rodsweep.discretization.straight.longitudinal_modes import longitudinal_modes
+from rodsweep.discretization.straight.longitudinal_modes import longitudinal_eigenvalues_and_errors
 from rodsweep.model.compiled.digest import kernel_digest, kernel_of
 from rodsweep.model.compiled.kernel_constants import KernelConstants
 from rodsweep.model.material.profile import Profile
@@ -69,11 +69,11 @@ from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.motion.tip_target import bent_state_with_tip_at
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point_outcome import FAILURE_EXCEPTIONS
+from rodsweep.solve.spectrum.krylov_schur_on_two_meshes import solve_on_two_meshes
 from rodsweep.solve.spectrum.path.followed_leader import follow_leading_eigenvalue
 from rodsweep.solve.spectrum.path.leader_in_range import next_range
 from rodsweep.solve.spectrum.path.neighbouring_rods import NeighbouringRods
 from rodsweep.solve.spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
-from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
 
 ALL = "RODSWEEP_RODS" in os.environ
 FIRST, EACH = (0, 1) if ALL else (31, 62)
@@ -88,7 +88,7 @@ WITH_FOLD = Rod(F=0.0, k1=149.9, k2=1e4, gamma3=1e-4)
 ANOTHER_START = {
     ("INTEGRATOR_SETTINGS", "relaxation_duration_over_period"),
     ("INTEGRATOR_SETTINGS", "relaxation_steps_per_period"),
-    ("INTEGRATOR_SETTINGS", "stored_relaxation_shortening"),
+    ("INTEGRATOR_SETTINGS", "relaxation_shortening_if_stored"),
     ("INTEGRATOR_SETTINGS", "relaxation_tolerance"),
 }
 """Fields that define the state from which a motion starts: another value is another motion."""
@@ -170,8 +170,8 @@ def curve_of_folds(accuracy: float) -> Answer:
         return None
     last = points[-1]
     return {
-        f"{end.name} at": (last.branch_parameter, last.branch_parameter_error),
-        "row": (last.row_parameter, ROUNDING),
+        f"{end.name} at": (last.branch_parameter_value, last.branch_parameter_error),
+        "row": (last.row_parameter_value, ROUNDING),
     }
 
 
@@ -194,8 +194,8 @@ def extremum_of_folds(accuracy: float) -> Answer:
         return None
     answer = {}
     for number, point in enumerate(p for p in points if p.row_parameter_error_at_extremum):
-        answer[f"extremum {number}, F"] = point.branch_parameter, point.branch_parameter_error
-        answer[f"extremum {number}, k1"] = point.row_parameter, point.row_parameter_error_at_extremum
+        answer[f"extremum {number}, F"] = point.branch_parameter_value, point.branch_parameter_error
+        answer[f"extremum {number}, k1"] = point.row_parameter_value, point.row_parameter_error_at_extremum
     return answer
 
 
@@ -227,9 +227,9 @@ def hopf_curve() -> tuple[ParameterPlane, Any]:
 
 def generalised_hopf(accuracy: float) -> Answer:
     found = curve_criticality(*hopf_curve(), accuracy)
-    if found.unlocated_sign_change_count or len(found.points) != 1:
+    if found.unlocated_sign_change_count or len(found.bautin_points) != 1:
         return None
-    (point,) = found.points
+    (point,) = found.bautin_points
     return {
         name: (point.parameter_values[i], point.parameter_errors[i]) for i, name in enumerate(("F", "k1"))
     }
@@ -238,7 +238,7 @@ def generalised_hopf(accuracy: float) -> Answer:
 def curve_of_generalised_hopf(accuracy: float) -> Answer:
     """Where the curve of generalised Hopf points over k2 has the values that are asked for."""
     plane, curve = hopf_curve()
-    (point,) = curve_criticality(plane, curve, 1e-10).points
+    (point,) = curve_criticality(plane, curve, 1e-10).bautin_points
     asked = np.array([8e3, 1.2e4, 1e4])
     space = BautinProblem(plane.rod, (*plane.axes, PlaneAxis("k2", 8e3, 1.2e4)), asked, accuracy)
     found = bautin_curve(space, space.as_curve_point(point, 2, 1e4))
@@ -403,7 +403,7 @@ def curves_of_changes(accuracy: float) -> Answer:
             for axis, value, error in zip(
                 plane.axes, fold.parameter_values, fold.parameter_errors, strict=True
             ):
-                answer[f"curve {number}, fold {place}: {axis.name}"] = value, error
+                answer[f"curve {number}, fold {place}: {axis.parameter_name}"] = value, error
     return answer
 
 
@@ -453,7 +453,7 @@ def on_mesh(accuracy: float) -> Answer:
 
 def longitudinal(accuracy: float) -> Answer:
     """Longitudinal eigenvalues of a cone, whose accuracy is a setting itself."""
-    w, error = longitudinal_modes(Rod(F=8.0, k1=1e3, k2=1e2, gamma3=1e-3, taper=0.3), 5)
+    w, error = longitudinal_eigenvalues_and_errors(Rod(F=8.0, k1=1e3, k2=1e2, gamma3=1e-3, taper=0.3), 5)
     return {f"w{i}": (float(value), float(error[i] * abs(value))) for i, value in enumerate(w)}
 
 
@@ -616,7 +616,7 @@ CASES = {
     "ASYMMETRIC_START_SETTINGS": LOPSIDED,
     "BRANCH_START_SETTINGS": BRANCH,
     "BRANCH_SETTINGS": BRANCH,
-    "COMPUTING_TIME_SETTINGS": BRANCH,
+    "COMPUTING_TIME_MODEL_SETTINGS": BRANCH,
     "SPECIAL_POINT_SETTINGS": BRANCH,
     "SHOOTING_INTERVAL_SETTINGS": UNSTABLE,
     "LEAST_STRETCH_SETTINGS": BRANCH,

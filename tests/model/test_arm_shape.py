@@ -8,8 +8,13 @@ from scipy.integrate import solve_ivp
 
 from rodsweep.errors import InputError
 from rodsweep.model.arm.arm import SlenderArm
-from rodsweep.model.arm.drag import DRAG_ESTIMATE_NAMES, cox_drag, gray_hancock_drag, lighthill_drag
-from rodsweep.model.arm.geometry import MAX_NEIGHBOURING_RADIUS_RATIO
+from rodsweep.model.arm.drag import (
+    DRAG_ESTIMATE_NAMES,
+    cox_drag_over_viscosity,
+    gray_hancock_drag_over_viscosity,
+    lighthill_drag_over_viscosity,
+)
+from rodsweep.model.arm.geometry import MAX_RADIUS_RATIO_OF_PROFILE_ROWS
 from rodsweep.model.arm.neglected import SELF_BUCKLING_WEIGHT, neglected_effects, smallest_drag
 
 ROUND = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "50 Pa s", "pressure": "2 kPa"}
@@ -66,7 +71,11 @@ def test_the_drags_of_a_cone_are_those_of_its_local_radius(taper):
     cone = uniform(radius=radius, tip_radius=taper * radius, pressure=None)
     u = np.linspace(0, 1, 1001)[1:-1]
     values = {name: cone.parameter(name) for name in ("k1", "k2", "gamma3", "taper")}
-    for number, form, error in ((0, cox_drag, 3e-4), (1, gray_hancock_drag, 3e-4), (3, lighthill_drag, 6e-4)):
+    for number, form, error in (
+        (0, cox_drag_over_viscosity, 3e-4),
+        (1, gray_hancock_drag_over_viscosity, 3e-4),
+        (3, lighthill_drag_over_viscosity, 6e-4),
+    ):
         local = cone.material_with_drag(cone.base_drag_estimates[number]).local_coefficients(0.0, values, u)
         slenderness = 0.1 / (radius * (1 - (1 - taper) * u))
         across = np.array([form(each)[1] for each in slenderness])
@@ -74,7 +83,7 @@ def test_the_drags_of_a_cone_are_those_of_its_local_radius(taper):
     assert local.gamma3 == pytest.approx(values["gamma3"] * (1 - (1 - taper) * u) ** 2, rel=1e-12)
     radii = 1 - (1 - taper) * cone.material.breaks
     steps = np.maximum(radii[1:] / radii[:-1], radii[:-1] / radii[1:])
-    assert steps.max() <= MAX_NEIGHBOURING_RADIUS_RATIO * (1 + 1e-12)
+    assert steps.max() <= MAX_RADIUS_RATIO_OF_PROFILE_ROWS * (1 + 1e-12)
 
 
 def test_factors_of_segments_by_hand():
@@ -86,7 +95,10 @@ def test_factors_of_segments_by_hand():
     kappa = 9 * 1.5625 / (10 * 1.5625 + 26 * 0.25)
     k1 = 2.5 * (16 - 4) / 36
     axial, across = (
-        thin / thick for thin, thick in zip(cox_drag(0.1 / 0.004), cox_drag(0.1 / 0.006), strict=True)
+        thin / thick
+        for thin, thick in zip(
+            cox_drag_over_viscosity(0.1 / 0.004), cox_drag_over_viscosity(0.1 / 0.006), strict=True
+        )
     )
     expected = (k1, k1 * kappa / 0.9, 2.5 * (256 - 16) / 1296, axial, across, 16 / 36)
     assert rows[2] == pytest.approx(expected, rel=1e-12)

@@ -9,7 +9,7 @@ from rodsweep.determinant.arm.determinant import ArmDeterminant, coefficient_sam
 from rodsweep.model.dispersion import (
     SAMPLES_PER_INTERVAL,
     largest_growth_and_wave_number,
-    local_growths_and_wave_numbers,
+    most_amplified_local_waves,
     sampled_arm,
 )
 from rodsweep.model.material.profile import Profile
@@ -63,7 +63,7 @@ def test_waves_at_extreme_forces_do_not_overflow() -> None:
 
 def test_local_waves_of_a_slightly_tapered_arm_are_those_of_the_uniform_rod() -> None:
     uniform = Rod(F=50.0, k1=200.0, k2=1e4, gamma3=1e-4)
-    rates, wave_numbers = local_growths_and_wave_numbers(
+    rates, wave_numbers = most_amplified_local_waves(
         Rod(F=50.0, k1=200.0, k2=1e4, gamma3=1e-4, taper=1 - 1e-9)
     )
     rate, wave_number = largest_growth_and_wave_number(uniform)

@@ -105,7 +105,7 @@ def test_two_rows_at_one_place_are_a_jump():
         ((0.0, 0.5, 0.5, 0.5, 1.0), (1, 1, 1, 1, 1), "there are 3 rows at u = 0.5"),
         ((0.0, 0.0, 1.0), (1, 1, 1), "there are 2 rows at u = 0"),
         ((0.0, 1.0), (1, 0), "the factor of k3 at u = 1 is 0; it must be finite and above 0"),
-        ((0.0, 0.5, 1.0), (1, 1e308, 1), "the largest factor is 1e.308, and the factors between the rows "),
+        ((0.0, 0.5, 1.0), (1, 1e308, 1), "the largest factor is 1e.308, and interpolation between the rows "),
         ((0.0, 1.0), (1, np.inf), "the factor of k3 at u = 1 is inf"),
     ],
 )

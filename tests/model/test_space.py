@@ -9,10 +9,14 @@ from scipy.linalg import expm
 
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.nodal_rod import nodal_rod
-from rodsweep.discretization.stress.balance import write_balance, write_strain_rates, write_velocity_residuals
+from rodsweep.discretization.stress.balance import (
+    write_strain_rates,
+    write_velocities_and_rates,
+    write_velocity_residuals,
+)
 from rodsweep.discretization.stress.jacobian import write_jacobian
-from rodsweep.model.algebra import ALGEBRAS, SE3
 from rodsweep.model.balance import ad
+from rodsweep.model.lie_algebra import ALGEBRAS, SE3
 from rodsweep.model.rod import Rod
 
 ROD, GAMMA1 = Rod(F=50.0, k1=1e3, k2=1e2, gamma3=1e-2), 0.7
@@ -44,7 +48,7 @@ def state(rod, grid):
 def balanced(x, rod, grid):
     """V and G at all nodes, (d, nodes + 1)."""
     V, G = np.empty((2, *rod.drag.shape))
-    write_balance.compiled_for(ALGEBRAS[len(V)])(x, V, G, rod, grid.node_matrices)
+    write_velocities_and_rates.compiled_for(ALGEBRAS[len(V)])(x, V, G, rod, grid.node_matrices)
     return V, G
 
 
@@ -67,8 +71,8 @@ def test_compiled_functions_do_what_their_loops_do(material, kept):
     x = np.random.default_rng(d).standard_normal(n)
     found = []
     for run, slope in (
-        (write_balance.compiled_for(g), write_jacobian.compiled_for(g)),
-        (partial(write_balance, g), partial(write_jacobian, g)),
+        (write_velocities_and_rates.compiled_for(g), write_jacobian.compiled_for(g)),
+        (partial(write_velocities_and_rates, g), partial(write_jacobian, g)),
     ):
         V, G = np.empty((2, d, grid.node_count + 1))
         J, tip = np.full((n, n), np.nan), np.full((d, n), np.nan)

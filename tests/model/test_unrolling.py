@@ -10,10 +10,13 @@ import pytest
 
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.nodal_rod import nodal_rod, nodal_rod_derivative
-from rodsweep.discretization.stress.balance import write_balance, write_balance_parameter_derivative
-from rodsweep.model.algebra import SE2, SE3
+from rodsweep.discretization.stress.balance import (
+    write_balance_parameter_derivative,
+    write_velocities_and_rates,
+)
 from rodsweep.model.compiled.digest import kernel_digest, kernel_of
 from rodsweep.model.compiled.unrolling import UnrolledOverAlgebra
+from rodsweep.model.lie_algebra import SE2, SE3
 from rodsweep.model.rod import Rod
 
 ROD, GRID = Rod(F=50.0, k1=1e3, k2=1e2, gamma3=1e-2), uniform_mesh(2, 3)
@@ -26,7 +29,7 @@ def test_derivative_along_a_parameter_is_that_of_loops_in_python():
     rod, change = nodal_rod(PLANE, GRID), nodal_rod_derivative(ROD.balance_coefficient_derivative("k1"), GRID)
     x = np.random.default_rng(1).standard_normal(3 * GRID.node_count)
     V, G = np.empty((2, 3, GRID.node_count + 1))
-    write_balance(SE2, x, V, G, rod, GRID.node_matrices)
+    write_velocities_and_rates(SE2, x, V, G, rod, GRID.node_matrices)
     out = np.empty((2, 3, 3, GRID.node_count + 1))
     write_balance_parameter_derivative.compiled_for(SE2)(x, V, out[0], change, rod, GRID.node_matrices)
     write_balance_parameter_derivative(SE2, x, V, out[1], change, rod, GRID.node_matrices)
@@ -69,8 +72,8 @@ def test_a_loop_that_is_left_early_is_not_written_out():
 
 
 def test_algebras_have_kernels_of_their_own():
-    assert write_balance.compiled_for(SE2) is write_balance.compiled_for(SE2)
-    assert write_balance.compiled_for(SE2) is not write_balance.compiled_for(SE3)
+    assert write_velocities_and_rates.compiled_for(SE2) is write_velocities_and_rates.compiled_for(SE2)
+    assert write_velocities_and_rates.compiled_for(SE2) is not write_velocities_and_rates.compiled_for(SE3)
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,7 @@ from rodsweep.post.figures.cycle.selection import chosen_cycles
 from rodsweep.post.figures.cycle.shapes_and_tip_motion import (
     ARROW_LENGTH,
     draw_shapes_and_tip_motion,
-    drawn_shape_indices,
+    drawn_shapes_and_time_step,
 )
 from rodsweep.post.figures.limit_cycle import chosen_figure_kind
 from rodsweep.post.figures.request import FigureRequest
@@ -56,7 +56,7 @@ def test_interpolant_and_derivative_are_exact_for_harmonics(n):
 
 @pytest.mark.parametrize("stored", [1, 8, 12, 16, 25, 48, 500])
 def test_drawn_shapes_are_equally_spaced_in_time(stored):
-    drawn, step = drawn_shape_indices(stored)
+    drawn, step = drawn_shapes_and_time_step(stored)
     assert drawn[0] == 0
     assert min(stored, 6) <= len(drawn) <= 12
     assert np.array(drawn) / stored == pytest.approx(np.arange(len(drawn)) * step)
@@ -66,7 +66,7 @@ def test_force_presses_on_the_tip_against_e1_in_the_colour_of_its_shape_and_late
     view = make_view(([50.0], [1e4], [1e2], [1e-2], [1.0]), [0])
     axes = draw_shapes_and_tip_motion(view, ())[0].axes[0]
     arrows = [a for a in axes.collections if isinstance(a, Quiver)]
-    drawn, _ = drawn_shape_indices(SHAPES)
+    drawn, _ = drawn_shapes_and_time_step(SHAPES)
     assert len(arrows) == len(drawn) == 12
     v = {name: view.variables[f"shape_{name}"][0, 0, 0, 0, 0] for name in ("x", "y", "theta")}
     for place, arrow in zip(drawn, arrows, strict=True):
@@ -119,12 +119,12 @@ def test_amplitudes_are_zero_where_straight_and_unknown_where_there_is_no_cycle(
     columns = [c.ravel() for c in np.meshgrid(*SWEEP, indexing="ij")]
     for view in (grid, make_view(columns, SWEPT, as_list=True)):
         lines = amplitude_series(view, "F")
-        assert [line.parameters["gamma1"] for line in lines] == [1.0, 0.5]
+        assert [line.constant_parameters["gamma1"] for line in lines] == [1.0, 0.5]
         for line in lines:
-            wanted = expected[line.parameters["gamma1"]]
+            wanted = expected[line.constant_parameters["gamma1"]]
             assert line.tip_y_max == pytest.approx(wanted, nan_ok=True)
             assert line.amplitude_x == pytest.approx(wanted, nan_ok=True)
-            x, y = line.with_gaps_at_straight_rods(line.tip_y_max)
+            x, y = line.x_and_values_with_gaps(line.tip_y_max)
             assert np.isnan([x[1], y[1]]).all()
             assert x[[0, 2]].tolist() == [20, 30]
 

@@ -6,7 +6,7 @@ import h5py
 import numpy as np
 import pytest
 
-from rodsweep.discretization.straight.longitudinal_modes import longitudinal_modes
+from rodsweep.discretization.straight.longitudinal_modes import longitudinal_eigenvalues_and_errors
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.post.tables.column import coordinate_column
@@ -183,7 +183,7 @@ def test_longitudinal_rates_of_rubber_cones_stand_beside_the_modes_with_their_er
     assert len(rows) == 8
     for F, k1, taper, rate, error in rows:
         material = RodMaterial(law="neo_hookean")
-        alone = longitudinal_modes(
+        alone = longitudinal_eigenvalues_and_errors(
             Rod(F=F, k1=k1, k2=1e4, gamma3=0.0, gamma1=2, taper=taper, material=material), 1
         )
         assert (rate, error < 1e-12) == (pytest.approx(alone[0][0], rel=1e-12), True)
@@ -192,7 +192,7 @@ def test_longitudinal_rates_of_rubber_cones_stand_beside_the_modes_with_their_er
 def test_typed_coordinates_keep_all_digits_and_computed_ones_lose_their_rounding_error():
     typed = [24.101412761256988, 0.1234567, 54.48730018140099]
     computed = [2500.0000000000005, 0.30000000000000004]
-    texts = coordinate_column("F", "k3/L^2", "force", np.array(typed + computed)).texts()
+    texts = coordinate_column("F", "k3/L^2", "force", np.array(typed + computed)).csv_texts()
     assert texts == [*map(repr, typed), "2500", "0.3"]
 
 

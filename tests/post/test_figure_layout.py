@@ -19,7 +19,7 @@ from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.animation import prepared_animation
 from rodsweep.post.figures.cycle.selection import chosen_cycles
 from rodsweep.post.figures.layout.layout_fitting import WORD_PATTERN, break_lines, fit_layout
-from rodsweep.post.figures.layout.ticks import visible_labels
+from rodsweep.post.figures.layout.tick_thinning import visible_labels
 from rodsweep.post.figures.request import FigureLook
 from rodsweep.post.figures.style import FIGURE_STYLE
 

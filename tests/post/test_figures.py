@@ -24,8 +24,8 @@ from rodsweep.post.figures.grid_slices import slice_at_values
 from rodsweep.post.figures.point_lists import label_point_numbers
 from rodsweep.post.figures.request import FigureLook
 from rodsweep.post.figures.spectra.spectra_along_line import (
+    followed_or_all_roots,
     mark_thresholds,
-    select_roots,
     with_gaps_between_roots,
 )
 from rodsweep.post.figures.stability.class_bars import CLASS_COLOURS
@@ -59,8 +59,8 @@ def test_every_task_has_a_summary_and_a_figure():
 def test_rightmost_and_smallest_roots_differ():
     growth = np.array([[5.0, 5.0, -1.0, -3.0]])
     frequency = np.array([[7.0, -7.0, 0.0, 0.0]])
-    assert select_roots(growth, frequency, "rightmost").tolist() == [[5 + 7j, 5 - 7j]]
-    assert select_roots(growth, frequency, "smallest").tolist() == [[-1 + 0j, -3 + 0j]]
+    assert followed_or_all_roots(growth, frequency, "rightmost").tolist() == [[5 + 7j, 5 - 7j]]
+    assert followed_or_all_roots(growth, frequency, "smallest").tolist() == [[-1 + 0j, -3 + 0j]]
 
 
 def test_line_is_broken_where_another_root_takes_over():

@@ -16,7 +16,7 @@ from rodsweep.api.dataset import view_of_dataset
 from rodsweep.post.located_thresholds import BracketedThreshold, LocatedThreshold, StoredThresholds
 from rodsweep.post.summary import summary_of
 from rodsweep.post.summary.number_texts import axis_values_text, number_with_error_text
-from rodsweep.post.summary.selection import Selection
+from rodsweep.post.summary.selection import PointSelection
 from rodsweep.post.summary.stability import rod_and_arm_stability_lines
 from rodsweep.post.summary.thresholds import oscillation_end_index
 from rodsweep.post.summary.variable_errors import absolute_errors
@@ -61,8 +61,8 @@ def test_thresholds_between_grid_points_do_not_depend_on_the_grid(command, step,
     ]
     assert [point.kind for point in found] == ["hopf", "restabilization"]
     for point, exact in zip(found, (HOPF, STABLE_AGAIN), strict=True):
-        assert abs(point.position - exact) <= point.error + 1e-12
-        assert point.error < 1e-12
+        assert abs(point.position - exact) <= point.position_error + 1e-12
+        assert point.position_error < 1e-12
 
 
 def test_changes_do_not_depend_on_how_points_are_given(command):
@@ -141,8 +141,8 @@ def test_the_time_of_a_growth_that_is_hardly_known_from_1_is_not_told():
     }
     view = SimpleNamespace(variables=v)
     assert absolute_errors(v, "transient_time")[0] == pytest.approx(0.2, rel=1e-3)
-    assert Selection(view, np.array([True, True])).range_text("transient_time") == "2"
-    assert Selection(view, np.array([False, True])).range_text("transient_time") == "none"
+    assert PointSelection(view, np.array([True, True])).range_text("transient_time") == "2"
+    assert PointSelection(view, np.array([False, True])).range_text("transient_time") == "none"
 
 
 @pytest.mark.long

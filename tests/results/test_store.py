@@ -21,7 +21,7 @@ from rodsweep.results.file.validation import read_header
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts import layout_of
 from rodsweep.results.run import journal as pages_of
-from rodsweep.results.run.journal import Journal, journal_directory, read_journals, read_reasons
+from rodsweep.results.run.journal import Journal, journal_directory, read_failure_reasons, read_journals
 from rodsweep.sweep.points.points import Points
 
 CONFIG = resolved_config(
@@ -98,7 +98,7 @@ def test_blocks_of_any_size_give_the_same_file(tmp_path, monkeypatch, is_grid):
     journal(whole, range(count))
     whole.add_journals({})
     monkeypatch.setattr(pages_of, "BYTES_PER_READ", 3 * (LAYOUT.record_dtype.itemsize + 4))
-    monkeypatch.setattr(points, "MAX_BLOCK_POINTS", 2)
+    monkeypatch.setattr(points, "MAX_READ_BLOCK_POINTS", 2)
     store = ResultFileWriter(tmp_path / "a.h5", plan(is_grid))
     order = np.random.default_rng(1).permutation(count).tolist()
     journal(store, order[1:], rank=0)
@@ -211,7 +211,9 @@ def test_a_torn_line_of_reasons_is_dropped_and_only_it(tmp_path, lost):
     pages.close()
     (page,) = store.journal_directory.glob("rank-*")
     page.write_bytes(page.read_bytes()[:-lost])
-    assert read_reasons(store.journal_directory, LAYOUT, store.plan.fingerprint) == ["F=1.0: failed a"]
+    assert read_failure_reasons(store.journal_directory, LAYOUT, store.plan.fingerprint) == [
+        "F=1.0: failed a"
+    ]
     store.close()
 
 

@@ -6,10 +6,10 @@ from contents import content, same_spectra
 from kernels import other_kernels
 
 from rodsweep.results.file.provenance import (
-    KERNELS_ATTRIBUTE,
+    BLAS_KERNELS_ATTRIBUTE,
     blas_kernels_in,
     merged_blas_kernels,
-    several_kernels_warning,
+    several_blas_kernels_warning,
 )
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.backend import petsc as blas_module
@@ -65,10 +65,10 @@ def test_libraries_are_named_by_who_uses_them(monkeypatch, loaded, said):
 
 def test_kernels_of_several_runs_are_kept_once_each():
     assert merged_blas_kernels(["b", "a"], ["a"]) == "a\nb"
-    assert blas_kernels_in({KERNELS_ATTRIBUTE: "a\nb"}) == ["a", "b"]
+    assert blas_kernels_in({BLAS_KERNELS_ATTRIBUTE: "a\nb"}) == ["a", "b"]
     assert blas_kernels_in({}) == ["unknown"], "an earlier version did not ask"
-    assert several_kernels_warning("a") == ""
-    assert "2 BLAS kernels (a; b)" in several_kernels_warning("a\nb")
+    assert several_blas_kernels_warning("a") == ""
+    assert "2 BLAS kernels (a; b)" in several_blas_kernels_warning("a\nb")
 
 
 @pytest.fixture(scope="module")

@@ -107,7 +107,7 @@ def test_two_threads_share_the_work_without_losing_any():
 def test_points_that_all_ranks_have_kept_are_counted():
     handout = ChunkQueue([(0, 9)], rank_count=2)
     for rank, points in ((0, 2), (1, 3), (0, 1)):
-        handout.add_report(rank, RankReport(stored_point_count=points))
+        handout.add_report(rank, RankReport(newly_stored_point_count=points))
     assert handout.stored_points == 6
 
 

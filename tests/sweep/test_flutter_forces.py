@@ -135,7 +135,7 @@ def test_a_search_that_overflows_fails_in_words(monkeypatch, error):
     def overflowing(*_):
         raise error
 
-    monkeypatch.setattr(relative_load, "cover_with_boxes", overflowing)
+    monkeypatch.setattr(relative_load, "zeros_and_open_boxes_of_covering", overflowing)
     with pytest.raises(
         relative_load.FlutterSearchFailed, match="relative load refers fails: (too large|ZeroDivisionError)"
     ):

@@ -6,7 +6,7 @@ from itertools import accumulate
 import numpy as np
 import pytest
 
-from rodsweep.sweep.progress import on_terminal
+from rodsweep.sweep.progress import is_stderr_a_terminal
 from rodsweep.sweep.remaining_time import (
     POINT_COUNT_RATIO_OF_SUCCESSIVE_RECORDS,
     RemainingTimeEstimator,
@@ -147,4 +147,4 @@ def test_a_launcher_that_was_killed_is_no_terminal(monkeypatch):
     monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
     monkeypatch.setattr("os.readlink", refuse)
     monkeypatch.setattr("sys.stderr", io.StringIO())
-    assert not on_terminal()
+    assert not is_stderr_a_terminal()

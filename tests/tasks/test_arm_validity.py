@@ -21,7 +21,7 @@ from rodsweep.model.arm.neglected import (
 from rodsweep.post.figures import draw
 from rodsweep.post.summary.arm.arm_answer_lines import arm_answer
 from rodsweep.post.summary.arm.validity_sentences import judged_row_motion_clause, validity_sentence
-from rodsweep.post.summary.selection import Selection
+from rodsweep.post.summary.selection import PointSelection
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.phase_diagram import STABILITY_CLASSES
 from rodsweep.results.layouts.si_variables import UNKNOWN_VALIDITY_NUMBER, VALIDITY_VARIABLES
@@ -140,10 +140,10 @@ def test_rows_with_and_without_a_hopf_point_are_counted():
     data = rs.sweep("phase_diagram", arm=arm, k1=[100.0, 1600.0], curves=False, progress=False)
     view = view_of_dataset(data, Path("a.h5"))
     every = np.ones(data.status.shape, bool)
-    assert judged_row_motion_clause(Selection(view, every)) == (
+    assert judged_row_motion_clause(PointSelection(view, every)) == (
         ", judged at the first Hopf point of each row, and at rest without load on 1 row without"
     )
-    assert judged_row_motion_clause(Selection(view, ~every)) == ""
+    assert judged_row_motion_clause(PointSelection(view, ~every)) == ""
 
 
 def test_a_search_that_failed_is_no_arm_at_rest():
@@ -157,8 +157,8 @@ def test_a_search_that_failed_is_no_arm_at_rest():
     solver = made.solver()
     record = solver.file_values_of_outcome(0, solver.solve(0))
     assert record["model_applies"] == Validity.applies
-    judge = ArmValidity(made.config, made.points, solver.statuses)
-    failed = next(status for status in solver.statuses if status.name == "failed")
+    judge = ArmValidity(made.config, made.points, solver.possible_statuses)
+    failed = next(status for status in solver.possible_statuses if status.name == "failed")
     assert (
         judge.variables_of_points(record | {"status": int(failed)}, 0)["model_applies"]
         == UNKNOWN_VALIDITY_NUMBER
@@ -601,7 +601,7 @@ def test_what_is_not_solved_is_not_said_to_stay_straight(command, task):
                         changed[name] = changed[name].copy()
                         changed[name][tuple(place)] = 0 if name == "crossing_kind" else np.nan
         done = np.ones(view.variables["status"].shape, bool)
-        lines = arm_answer(Selection(replace(view, variables=changed), done))
+        lines = arm_answer(PointSelection(replace(view, variables=changed), done))
         for words in expected:
             assert any(line.startswith(words) or words in line for line in lines), (lines, words)
         if "failed" in (first, second) or "not_settled" in (first, second) or -1 in (first, second):

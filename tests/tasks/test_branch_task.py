@@ -21,7 +21,7 @@ from rodsweep.post.figures.smooth_branch import smooth_curve_of_branch
 from rodsweep.post.range_unions import intersection_of_ranges, union_of_ranges
 from rodsweep.post.stored_branches import stability_between_vertices
 from rodsweep.post.summary import branch as summary
-from rodsweep.post.summary.selection import Selection
+from rodsweep.post.summary.selection import PointSelection
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS
 from rodsweep.results.layouts.variables import MISSING_STATUS
@@ -79,7 +79,7 @@ def test_show_of_many_rods_tells_where_branches_end_and_where_two_have_stable_cy
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(summary, "RodBranches", WithBreaking)
-        told = summary.branch_summary(Selection(view, np.ones((2, 1, 1, 1), bool))).answer
+        told = summary.branch_summary(PointSelection(view, np.ones((2, 1, 1, 1), bool))).answer
     assert "1 symmetry breaking: F = 75" in told
     assert "2 branches end at the end of the range: F = 80" in told
     assert "two stable cycles, on different branches, at 1 of 2 rods" in told
@@ -91,7 +91,7 @@ def test_show_names_the_branch_that_could_not_be_followed(command):
     view = read_view(command.directory / "c.h5")
     reasons = view.variables["special_reason"]
     reasons[reasons > 0] = END_REASONS.index("no_cycle_found")
-    told = summary.branch_summary(Selection(view, np.ones((2, 1, 1, 1), bool))).answer
+    told = summary.branch_summary(PointSelection(view, np.ones((2, 1, 1, 1), bool))).answer
     assert "1 branch ends at a cycle beyond which the branch was not followed: F = 80" in told
     assert "  k1 = 150: branch 1, at F = 80" in told
 
@@ -136,7 +136,7 @@ def test_curves_of_a_file_go_through_cycles_and_special_points(command):
     assert (curve.tip_y_max[0], curve.tip_y_max[-1]) == (0, 0)
     assert int(np.argmax(curve.parameter)) == np.flatnonzero(~curve.is_cycle)[1]
     assert curve.parameter.max() == pytest.approx(FOLD, rel=1e-8)
-    stable, unstable = RodBranches(view).straight_rod_stability_ranges((0.0, 200.0))
+    stable, unstable = RodBranches(view).straight_rod_stable_unstable_ranges((0.0, 200.0))
     assert stable == [
         (0.0, pytest.approx(67.3869842879)),
         (pytest.approx(85.569316943), 150 * (1 - 1e-4)),
@@ -260,8 +260,8 @@ def test_branches_without_room_for_their_special_points_are_told_of_and_not_draw
     assert "stable cycles beside a stable straight rod at 0 of 1 rod" in told
     view = read_view(command.directory / "c.h5")
     assert [len(RodBranches(view, rod).curves) for rod in (0, 1)] == [0, 0]
-    assert RodBranches(view).straight_rod_stability_ranges((0.0, 200.0))[0] == [(0.0, 200.0)]
-    assert RodBranches(view, 1).straight_rod_stability_ranges((0.0, 200.0)) == ([], [])
+    assert RodBranches(view).straight_rod_stable_unstable_ranges((0.0, 200.0))[0] == [(0.0, 200.0)]
+    assert RodBranches(view, 1).straight_rod_stable_unstable_ranges((0.0, 200.0)) == ([], [])
     command.write("d.yaml", CONFIG.format(k1=150, stop=200).replace("stop:", "special: 2, stop:"))
     command.solved("d.yaml")
     assert "1 of 1 branch is not shown" in " ".join(command("show", "d.h5").stdout.split())

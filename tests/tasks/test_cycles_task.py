@@ -16,7 +16,7 @@ from rodsweep.cli.checking import print_job_check
 from rodsweep.errors import InputError
 from rodsweep.post.summary import show_summary
 from rodsweep.post.summary.limit_cycle import limit_cycle_summary
-from rodsweep.post.summary.selection import Selection
+from rodsweep.post.summary.selection import PointSelection
 from rodsweep.results.file.creation import FilePlan
 from rodsweep.results.file.result_file_writer import ResultFileWriter
 from rodsweep.results.file.view import read_view
@@ -412,7 +412,7 @@ def test_show_tells_the_multipliers_of_the_cycles_that_tori_surround():
     view.variables["modulation_ratio"] = np.array([np.nan, 0.170391]).reshape(view.variables["status"].shape)
     view.variables["multiplier"] = np.array([np.nan, 1.25]).reshape(view.variables["status"].shape)
     view.variables["multiplier_error"] = np.full(view.variables["status"].shape, 1e-3)
-    told = limit_cycle_summary(Selection(view, view.variables["status"] >= 0))
+    told = limit_cycle_summary(PointSelection(view, view.variables["status"] >= 0))
     assert (
         told.answer[0] == "of 2 points: stays straight at 1 (F = 50), "
         "beats quasiperiodically (two frequencies) at 1 (F = 60)"
@@ -444,12 +444,12 @@ def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
 @pytest.mark.parametrize("upward", [True, False])
 def test_chains_hold_every_point_once_in_order_along_their_axis(axis, upward):
     chains = Chains((2, 3, 4), axis, upward)
-    assert (chains.length, chains.count) == ((2, 3, 4)[axis], 24 // (2, 3, 4)[axis])
+    assert (chains.points_per_chain, chains.count) == ((2, 3, 4)[axis], 24 // (2, 3, 4)[axis])
     lines = [chains.indices(chain) for chain in range(chains.count)]
     assert sorted(np.concatenate(lines)) == list(range(24))
     for line in lines:
         places = np.array(np.unravel_index(line, chains.shape))
-        assert np.diff(places[axis]).tolist() == [1 if upward else -1] * (chains.length - 1)
+        assert np.diff(places[axis]).tolist() == [1 if upward else -1] * (chains.points_per_chain - 1)
         assert not np.diff(np.delete(places, axis, axis=0)).any()
 
 
@@ -658,7 +658,7 @@ fake = ModuleType("rodsweep.solve.cycle.limit_cycle")
 fake.CycleStatus, fake.CycleStart, fake.solve_cycle = CycleStatus, CycleStart, solve_cycle
 fake.CycleRequest = fake.Rod = SimpleNamespace
 sys.modules[fake.__name__] = fake
-reference = ModuleType("rodsweep.solve.cycle.reference_rod")
+reference = ModuleType("rodsweep.solve.cycle.rod_with_known_cycle")
 reference.warm_up = lambda: None
 sys.modules[reference.__name__] = reference
 '''

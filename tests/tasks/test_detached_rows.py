@@ -324,7 +324,9 @@ def test_new_special_points_of_a_row_start_curves_that_lead_to_further_rows():
     assert [start.parameter_value for start in rows.branch_starts_of_row(4)] == [0.6]
     results[5] = {"at": np.array([0.6])}
     assert not stages.stages(results)[-1].items_to_solve(results)
-    assert {row: values["at"].tolist() for row, values in stages.rows_solved_again(results).items()} == {
+    assert {
+        row: values["at"].tolist() for row, values in stages.variables_of_rows_solved_again(results).items()
+    } == {
         3: [0.2, 0.6],
         4: [0.6],
     }
@@ -395,6 +397,6 @@ def test_a_row_is_solved_again_with_all_its_crossings_and_only_for_new_ones():
     assert [start.parameter_value for start in rows.branch_starts_of_row(3)] == [0.2, 0.3, 0.8]
     # A row whose solver failed is unchanged, and its crossings start nothing else.
     results[5] = {}
-    assert stages.rows_solved_again(results) == {3: results[2]}
+    assert stages.variables_of_rows_solved_again(results) == {3: results[2]}
     assert repr(stages.stages(results)[-1]) == repr(rows)
     assert replace(rows, first_item_number=0).end_item_number == 1

@@ -27,7 +27,7 @@ from rodsweep.results.run.journal import Journal
 from rodsweep.solve.branch.special.special_curves import CurveEndReason, CurvePoint, SpecialPointCurve
 from rodsweep.solve.branch.special.special_point import SpecialPointKind
 from rodsweep.solve.changes.status import ThresholdStatus
-from rodsweep.solve.continuation.curve_search import TracedCurves
+from rodsweep.solve.continuation.curves_through_seeds import TracedCurves
 from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.tasks import modes, spectrum, thresholds
@@ -94,7 +94,7 @@ def search(index=0, **more):
         hopf_points=found,
         search_result=SimpleNamespace(
             thresholds=found,
-            open_range=(np.nan, np.nan),
+            range_of_further_crossings=(np.nan, np.nan),
             is_proved=True,
             determinant_evaluation_count=100,
             eigenvalue_solve_count=7,

@@ -10,7 +10,12 @@ import pytest
 
 from rodsweep import Arm
 from rodsweep.errors import InputError
-from rodsweep.model.arm.drag import cox_drag, drag_estimates, gray_hancock_drag, lighthill_drag
+from rodsweep.model.arm.drag import (
+    cox_drag_over_viscosity,
+    drag_estimates,
+    gray_hancock_drag_over_viscosity,
+    lighthill_drag_over_viscosity,
+)
 from rodsweep.model.arm.section import Circle, Rectangle, Tube
 from rodsweep.model.rod import Rod
 from rodsweep.model.units import load_over_flutter
@@ -18,11 +23,11 @@ from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.changes.threshold_kinds import Threshold, ThresholdKind
 from rodsweep.solve.changes.thresholds import Thresholds, empty_thresholds
 from rodsweep.solve.changes.thresholds_along_path import ThresholdSearchResult
-from rodsweep.verdict import flutter
-from rodsweep.verdict.assessment import Assessment
-from rodsweep.verdict.flutter import ThresholdsOverDrags, ThresholdsWithDrag
+from rodsweep.verdict import flutter_over_drags
+from rodsweep.verdict.flutter_over_drags import ThresholdsOverDrags, ThresholdsWithDrag
 from rodsweep.verdict.planes import PlaneOfMotion, PlanesOfMotion
 from rodsweep.verdict.sentences import verdict_sentences
+from rodsweep.verdict.validity_assessment import ValidityAssessment
 
 OK = ThresholdStatus.ok
 
@@ -59,9 +64,15 @@ def test_silicone_arm_by_hand():
 
 def test_drag_by_hand():
     """L/a = 20: ln 40 = 3.688879, ln 160 = 5.075174, ln 3.6 = 1.280934; per viscosity."""
-    assert cox_drag(20) == pytest.approx((2 * math.pi / 2.188879, 4 * math.pi / 3.188879), rel=1e-6)
-    assert gray_hancock_drag(20) == pytest.approx((2 * math.pi / 4.575174, 4 * math.pi / 5.575174), rel=1e-6)
-    assert lighthill_drag(20) == pytest.approx((2 * math.pi / 1.280934, 4 * math.pi / 1.780934), rel=1e-6)
+    assert cox_drag_over_viscosity(20) == pytest.approx(
+        (2 * math.pi / 2.188879, 4 * math.pi / 3.188879), rel=1e-6
+    )
+    assert gray_hancock_drag_over_viscosity(20) == pytest.approx(
+        (2 * math.pi / 4.575174, 4 * math.pi / 5.575174), rel=1e-6
+    )
+    assert lighthill_drag_over_viscosity(20) == pytest.approx(
+        (2 * math.pi / 1.280934, 4 * math.pi / 1.780934), rel=1e-6
+    )
     rotational = [drag.rotational_factor for drag in drag_estimates(1.0, 20.0, 1.0, 1.0)]
     assert rotational == pytest.approx([2 * math.pi, *2 * [math.pi, 4 * math.pi]])
 
@@ -174,7 +185,7 @@ def test_a_load_relative_to_flutter_is_read_as_people_write_it(given, share):
         ({"pressure": "100 % below flutter"}, "pressure = '100 % below flutter' is not a load relative"),
         ({"pressure": "1.2 of fluter"}, "pressure = '1.2 of fluter' is not a load .* like '1.2 of flutter'"),
         ({"pressure": "20 % abve flutter"}, "pressure = '20 % abve flutter' is not a load relative"),
-        ({"drag": []}, "drag = \\[\\] is not one name; choose one of likeliest, least"),
+        ({"drag": []}, "drag = \\[\\] is not a name; choose one of likeliest, least"),
         ({"drag": "leest"}, "drag = 'leest' is not known; choose one of likeliest, least"),
         ({"length": ""}, "length = '' is not a number with a unit"),
         ({"length": "1e400 m"}, "length = '1e400 m' is not a finite number"),
@@ -221,7 +232,7 @@ def test_frequency_follows_from_tau2():
     rod = arm()
     for drag, found in zip(rod.base_drag_estimates, rod.flutter.by_drag, strict=True):
         rate = found.first_threshold(ThresholdKind.hopf).frequency
-        assert found.first_frequency(ThresholdKind.hopf) == pytest.approx(
+        assert found.first_frequency_hz(ThresholdKind.hopf) == pytest.approx(
             abs(rate) / (2 * math.pi * rod.tau2_with(drag))
         )
 
@@ -243,7 +254,7 @@ def test_a_cone_flutters_at_a_larger_pressure_and_a_smaller_force():
 def test_thresholds_inside_the_range_of_drag_lie_in_that_of_forces():
     """The range's corners bound it: the threshold is monotonic in gamma3."""
     from rodsweep.solve.changes.thresholds import solve_thresholds
-    from rodsweep.verdict.flutter import SEARCH_REQUEST
+    from rodsweep.verdict.flutter_over_drags import SEARCH_REQUEST
 
     rod = arm()
     flutter = rod.flutter.first_force_range(ThresholdKind.hopf)
@@ -318,7 +329,7 @@ def found(tau2, *changes, end=200.0):
 def verdict(rod, *forces):
     """The verdict on an arm with changes that are given for each drag."""
     plane = PlaneOfMotion(rod, ThresholdsOverDrags(forces))
-    return verdict_sentences(PlanesOfMotion(plane), Assessment(plane.arm, plane.thresholds))
+    return verdict_sentences(PlanesOfMotion(plane), ValidityAssessment(plane.arm, plane.thresholds))
 
 
 @pytest.mark.parametrize(
@@ -429,8 +440,8 @@ def test_a_search_that_ended_early_limits_the_verdict_with_every_drag(monkeypatc
     def forces(arm, drag, end=200.0):
         return whole if drag == arm.base_drag_estimates[0] else ThresholdsWithDrag(tau2=2.0, thresholds=early)
 
-    monkeypatch.setattr(flutter, "thresholds_with_drag", forces)
-    searched = flutter.thresholds_over_drags(arm(viscosity=1e3))
+    monkeypatch.setattr(flutter_over_drags, "thresholds_with_drag", forces)
+    searched = flutter_over_drags.thresholds_over_drags(arm(viscosity=1e3))
     assert len(searched.by_drag) > 1
     assert searched.end == 25.0
     told = " ".join(verdict(arm(viscosity=1e3), *searched.by_drag))

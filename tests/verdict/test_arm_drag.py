@@ -23,8 +23,8 @@ from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_threshold
 from rodsweep.sweep.points.arm_grid import grid_of_arms
 from rodsweep.sweep.points.flutter_forces import FlutterForce
 from rodsweep.tasks.arm.arm_points import numbers_of_distinct_rods
-from rodsweep.verdict.flutter import ThresholdKind
-from rodsweep.verdict.relative_load import first_hopf_force, rods_by_plane
+from rodsweep.verdict.flutter_over_drags import ThresholdKind
+from rodsweep.verdict.relative_load import first_hopf_force, rods_and_force_scales_by_plane
 
 SILICONE = {"length": "14 cm", "radius": "4 mm", "young": "100 kPa", "viscosity": "20 Pa s"}
 QUICK = {"accuracy": 1e-3, "harmonics": 2}
@@ -53,7 +53,7 @@ def test_thresholds_over_the_drags_are_those_of_the_verdict():
         force = found.first_force(ThresholdKind.hopf) * arm.pressure_scale
         assert here.pressure_hopf.item() == pytest.approx(force, rel=1e-9)
         assert here.frequency_hopf_hz.item() == pytest.approx(
-            found.first_frequency(ThresholdKind.hopf), rel=1e-9
+            found.first_frequency_hz(ThresholdKind.hopf), rel=1e-9
         )
         assert here.tau2.item() == arm.replace(drag=drag).tau2
 
@@ -105,7 +105,7 @@ def test_a_relative_force_is_told_as_a_force():
 
 
 def first_flutter_force(arm):
-    return min(first_hopf_force(rod) * scale for rod, scale in rods_by_plane(arm))
+    return min(first_hopf_force(rod) * scale for rod, scale in rods_and_force_scales_by_plane(arm))
 
 
 def test_a_rectangle_is_loaded_relative_to_the_plane_that_goes_first():

@@ -9,7 +9,7 @@ from typing import Any, cast
 import numpy as np
 import xarray as xr
 
-from ...config.document.call_arguments import refusing_wrong_arguments
+from ...config.document.call_argument_errors import refusing_wrong_arguments
 from ...post.headline.one_rod import SingleRodResult
 from ...post.headline.sentences import HEADLINES
 from ...post.tables.column import Column, column_of
@@ -18,14 +18,14 @@ from ...post.tables.tables import Tables
 from ...results.layouts import layout_of
 from ..task_results import Result
 from .data_frames import data_frame_of, series_of
-from .printing import PrintedAnswer, brief_html, brief_text, heading_lines, whole_html, whole_text
+from .printing import PrintedAnswerContents, brief_html, brief_text, heading_lines, whole_html, whole_text
 
 EIGENVALUE_VARIABLES = ("growth_rate", "frequency")
 """Variables with the real and the imaginary part of an eigenvalue."""
 UNPRINTED_VARIABLES = ("status", "seconds")
 """Variables that a printed answer omits: the heading has the status, and the time depends on the machine."""
 SI_UNITS_OF_ARM_VARIABLES = ("Pa", "N", "Hz", "s", "1/s", "m", "J", "W")
-"""SI units of the variables of an arm. Variables with other units are in units of the rod."""
+"""SI units of the variables of an arm. Variables with other units are in dimensionless units of the rod."""
 FOUND_COUNT_VARIABLES = {
     "crossings": "crossing_count",
     "special_points": "special_count",
@@ -93,7 +93,7 @@ class Answer:
     def status(self) -> StrEnum:
         """Name of the status of the solve, a member of the enumeration of all statuses of the task."""
         view = self._tables.view
-        statuses = _statuses(view.task, tuple(view.status_flags.values()))
+        statuses = _status_enumeration(view.task, tuple(view.status_flags.values()))
         return statuses(view.status_flags[int(view.variables["status"].item())])
 
     @property
@@ -124,13 +124,13 @@ class Answer:
         if name in self.lists:
             columns = tables.list_columns(name)
             return data_frame_of(
-                columns, columns[0].name if len(tables.contents.list_dimensions(name)) == 1 else None
+                columns, columns[0].name if len(tables.contents.dimensions_of_list(name)) == 1 else None
             )
         for variable in tables.contents.point_variables:
             if variable.name == name:
                 return _value_of_single_row(column_of(variable, np.ravel(tables.view.variables[name])))
         for list_name, variables in tables.contents.variables_by_list.items():
-            if name in (*(v.name for v in variables), *tables.contents.list_dimensions(list_name)):
+            if name in (*(v.name for v in variables), *tables.contents.dimensions_of_list(list_name)):
                 return self._list_values(list_name, name)
         if name == "eigenvalues" and EIGENVALUE_VARIABLES[0] in tables.view.variables:
             return self.growth_rate + 1j * self.frequency
@@ -140,8 +140,9 @@ class Answer:
         raise AttributeError(f"this answer has no {name!r}; it has {', '.join(self._attribute_names())}")
 
     def _list_values(self, table: str, name: str) -> np.ndarray:
-        """Values of a variable or a coordinate of a list, with one entry per item of the list."""
-        dimensions = self._tables.contents.list_dimensions(table)
+        """Values of the variable or coordinate `name` of the list `table`, with one entry per item of the
+        list."""
+        dimensions = self._tables.contents.dimensions_of_list(table)
         (column,) = (column for column in self._tables.list_columns(table) if column.name == name)
         if name in dimensions[1:]:
             return np.asarray(self.data[name].values)
@@ -176,7 +177,7 @@ class Answer:
     def _repr_html_(self) -> str:
         return brief_html(self._printed_answer())
 
-    def _printed_answer(self) -> PrintedAnswer:
+    def _printed_answer(self) -> PrintedAnswerContents:
         tables = self._tables
         rod = SingleRodResult(tables.view)
         is_special = int(self.data["status"]) != 0  # a special outcome, such as a rod at rest
@@ -195,7 +196,7 @@ class Answer:
             if name_of_total in self.data
         }
         totals |= {"modes": self.data.sizes["mode"]} if "mode" in self.data.sizes else {}
-        return PrintedAnswer(
+        return PrintedAnswerContents(
             result=rod,
             heading=heading_lines(rod, self.rod, self.status, self.sentence, self.message),
             headline=HEADLINES[str(self.data.attrs["task"])],
@@ -212,8 +213,8 @@ class Answer:
 
 
 @cache
-def _statuses(task: str, names: tuple[str, ...]) -> type[StrEnum]:
-    """Enumeration of all statuses of a task."""
+def _status_enumeration(task: str, names: tuple[str, ...]) -> type[StrEnum]:
+    """Enumeration of `names`, the names of all statuses of the task `task`."""
     new_enum: Any = StrEnum  # Any: mypy knows no StrEnum whose members come from data
     enum = new_enum("Status", {word: word for word in names})
     enum.__name__ = "".join(part.title() for part in task.split("_")) + "Status"

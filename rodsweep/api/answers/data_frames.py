@@ -28,7 +28,7 @@ def series_of(column: Column) -> Any:
     if column.is_boolean:
         return column.values.astype(bool)
     if column.flag_meanings:
-        return np.array([text or None for text in column.texts()], dtype=object)
+        return np.array([text or None for text in column.csv_texts()], dtype=object)
     if column.values.dtype.kind in "iu" and column.missing_mask.any():
         return pd.Series(column.values, dtype="Int64").mask(column.missing_mask)
     if column.values.dtype.kind == "f":

@@ -13,7 +13,7 @@ from typing import Any, Literal, ParamSpec, TypedDict, TypeVar, Unpack
 import numpy as np
 import xarray as xr
 
-from ...config.document.call_arguments import refusing_wrong_arguments, unknown_argument_error
+from ...config.document.call_argument_errors import refusing_wrong_arguments, unknown_argument_error
 from ...errors import InputError, short_repr
 from ...post.figures import draw
 from ...post.figures.grid_slices import checked_slice_values, slice_at_values
@@ -63,8 +63,8 @@ def _at_argument_text(match: re.Match[str]) -> str:
 
 
 def with_python_argument_names(function: Callable[P, R]) -> Callable[P, R]:
-    """Decorator: an InputError of the function names the arguments of `rs.plot` instead of command-line
-    options."""
+    """Decorator that replaces command-line options by arguments of `rs.plot` in the message of an InputError
+    that the function raises."""
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
@@ -100,7 +100,7 @@ def _require_valid_figure_options(look: Mapping[str, object]) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class CachedShapeSolver:
+class CachedCycleShapeSolver:
     """Function that adds the shapes of cycles to a view; each set of cycles is solved once and cached. solve:
     function that computes the shapes."""
 
@@ -196,7 +196,7 @@ def plot(
     values = checked_slice_values(at)
     views = [slice_at_values(view_of_result(item, PLOT_EXAMPLE), values) for item in views_or_answers]
     choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(map(int, point_list))}
-    choices |= {"look": FigureLook(**look), "shapes": CachedShapeSolver()}
+    choices |= {"look": FigureLook(**look), "shapes": CachedCycleShapeSolver()}
     file = None if output is None else require_file_path(output, PLOT_EXAMPLE)
     suffix = ".gif" if what == "animation" else ".png"
     with TemporaryDirectory(prefix="rodsweep-") as folder:

@@ -35,7 +35,7 @@ ERROR_SEPARATOR = "+-"
 
 
 @dataclass(frozen=True, slots=True)
-class PrintedAnswer:
+class PrintedAnswerContents:
     """Everything that the text or HTML of an answer contains."""
 
     result: SingleRodResult
@@ -52,7 +52,7 @@ class PrintedAnswer:
     lists: Mapping[str, tuple[Column, ...]]
     """Columns of each list printed in full, by name of the list; the first column numbers the items."""
     row_counts: Mapping[str, int]
-    """Number of rows of each list that is not printed in full, by name of the list."""
+    """Number of rows of each list that has rows but is not printed in full, by name of the list."""
     found_counts: Mapping[str, int]
     """Number of items found, including items that are not stored, by name of the list; for modes, the number
     of requested modes."""
@@ -69,10 +69,10 @@ class PrintedAnswer:
 def heading_lines(
     rod: SingleRodResult, name: str, status: str, sentence: str, message: str
 ) -> tuple[str, ...]:
-    """Lines of the heading: the result in a sentence, the rod with its status, and the status's meaning. The
-    first line says if the model does not apply to an arm, or is doubtful.
+    """Lines of the heading: the result in a sentence, the rod with its status, and the status's meaning. If
+    the model does not apply to an arm, or its validity is doubtful, the first line says so.
 
-    name: text of the rod. If the result has no sentence, the meaning of the status comes first.
+    name: text of the rod. status: name. sentence, message: meaning of the status, and message on the rod.
     """
     task = rod.view.task
     meaning = "; ".join(filter(None, (sentence, message)))
@@ -87,7 +87,7 @@ def heading_lines(
     return *filter(None, (caveat, answer)), f"{name}, {task}: {status}{proof_text}", meaning
 
 
-def brief_text(printed: PrintedAnswer) -> str:
+def brief_text(printed: PrintedAnswerContents) -> str:
     """Short text of an answer, about ten lines: the heading, the main numbers and the main list."""
     lines = [*_wrapped_heading(printed), *_number_lines(printed)]
     remaining_line = _full_listing_hint(printed)
@@ -95,19 +95,19 @@ def brief_text(printed: PrintedAnswer) -> str:
     return "\n".join([*lines, remaining_line])
 
 
-def brief_html(printed: PrintedAnswer) -> str:
+def brief_html(printed: PrintedAnswerContents) -> str:
     """Short HTML of an answer, with the content of `brief_text`."""
     blocks = [_html_heading(printed)]
     if pairs := _main_number_texts(printed):
         blocks.append(_html_table([], pairs))
-    columns, _ = _main_list_columns(printed, MAX_BRIEF_LINES)
+    columns, _ = _main_list_columns_and_row_count(printed, MAX_BRIEF_LINES)
     if columns:
         name, unit, *rows = zip(*columns, strict=True)
         blocks.append(_html_table([name, unit], rows))
     return "".join([*blocks, f"<p>{escape(' '.join(_full_listing_hint(printed).split()))}</p>"])
 
 
-def whole_text(printed: PrintedAnswer) -> str:
+def whole_text(printed: PrintedAnswerContents) -> str:
     """Long text of an answer: the heading, every number with its unit and meaning, the lists that are printed
     in full, and the numbers of rows of all other lists."""
     numbers_text = (
@@ -130,7 +130,7 @@ def whole_text(printed: PrintedAnswer) -> str:
     return "\n\n".join(filter(None, [*blocks, "\n".join(map(wrap_cell_text, printed.closing_lines))]))
 
 
-def whole_html(printed: PrintedAnswer) -> str:
+def whole_html(printed: PrintedAnswerContents) -> str:
     """Long HTML of an answer, with the content of `whole_text`."""
     headings: list[RowCells] = [("variable", "value", "unit", "meaning")]
     blocks = [_html_heading(printed), _html_table(headings, _number_rows(printed))]
@@ -143,13 +143,13 @@ def whole_html(printed: PrintedAnswer) -> str:
     return "".join([*blocks, *(f"<p>{escape(end)}</p>" for end in printed.closing_lines)])
 
 
-def _number_rows(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
-    """(name, value, unit, meaning) of every number."""
+def _number_rows(printed: PrintedAnswerContents) -> list[tuple[str, str, str, str]]:
+    """Texts (name, value, unit, meaning) of every number."""
     texts = printed.result.point_texts
     return [(c.name, texts.texts(c.name)[0], c.printed_unit, c.meaning) for c in printed.single_value_columns]
 
 
-def _wrapped_heading(printed: PrintedAnswer) -> list[str]:
+def _wrapped_heading(printed: PrintedAnswerContents) -> list[str]:
     """Lines of the heading, folded at the maximum width of a line."""
     return [line for text in printed.heading if text for line in wrap_cell_text(text).splitlines()]
 
@@ -162,7 +162,7 @@ def _list_title(name: str, columns: Sequence[Column], total: int) -> str:
     return f"{name}: {row_count or 'none'}{f' of {total}' if total > row_count else ''}{meaning}"
 
 
-def _main_number_texts(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
+def _main_number_texts(printed: PrintedAnswerContents) -> list[tuple[str, str, str, str]]:
     """(name, value, error with sign, unit), as texts, for each main number of the task that has a value."""
     name_and_number_texts = []
     for name in printed.headline.number_variables:
@@ -175,7 +175,7 @@ def _main_number_texts(printed: PrintedAnswer) -> list[tuple[str, str, str, str]
     return name_and_number_texts
 
 
-def _number_lines(printed: PrintedAnswer) -> list[str]:
+def _number_lines(printed: PrintedAnswerContents) -> list[str]:
     """Aligned lines of the main numbers of the task, after an empty line; empty if no main number has a
     value."""
     max_lines = (
@@ -189,10 +189,12 @@ def _number_lines(printed: PrintedAnswer) -> list[str]:
     return ["", *(COLUMN_GAP.join(row).rstrip() for row in zip(*filled_columns, strict=True))]
 
 
-def _main_list_columns(printed: PrintedAnswer, max_rows: int) -> tuple[list[list[str]], int]:
-    """Returns (columns of the main list, number of rows of the complete list). A column consists of the cells
-    name, unit, and values; errors form a separate column. The first column that would make a line longer than
-    LINE_WIDTH, and all later columns, are omitted. Returns ([], 0) for a task without a main list."""
+def _main_list_columns_and_row_count(
+    printed: PrintedAnswerContents, max_rows: int
+) -> tuple[list[list[str]], int]:
+    """Returns (columns of the main list, number of rows of the complete list). A column has the cells name,
+    unit and up to `max_rows` values; errors form a separate column. The first column that makes a line longer
+    than LINE_WIDTH and all later columns are omitted. Returns ([], 0) for a task without a main list."""
     digits = printed.result.list_texts.get(printed.headline.list_name)
     if digits is None:
         return [], 0
@@ -213,20 +215,20 @@ def _main_list_columns(printed: PrintedAnswer, max_rows: int) -> tuple[list[list
     return columns_of_cells, row_count
 
 
-def _brief_list(printed: PrintedAnswer, max_lines: int) -> list[str]:
+def _brief_list(printed: PrintedAnswerContents, max_lines: int) -> list[str]:
     """Lines of the main list, after an empty line; empty if the list has no rows. max_lines: desired maximum
     number of lines; at least MIN_PRINTED_ROWS rows are printed."""
     rows = max(max_lines - 3, MIN_PRINTED_ROWS)  # below an empty line, the names and the units
-    columns, row_count = _main_list_columns(printed, rows)
+    columns, row_count = _main_list_columns_and_row_count(printed, rows)
     if row_count == rows + 1:  # the line "and 1 more" has room for the row
-        columns, row_count = _main_list_columns(printed, row_count)
+        columns, row_count = _main_list_columns_and_row_count(printed, row_count)
     if not columns:
         return []
     (block,) = table_blocks(columns)
     return ["", *block] + ([f"and {row_count - rows} more"] if row_count > rows + 1 else [])
 
 
-def _full_listing_hint(printed: PrintedAnswer) -> str:
+def _full_listing_hint(printed: PrintedAnswerContents) -> str:
     """Line that names `.table()` for all numbers, and the lists with their numbers of rows."""
     row_counts = {name: len(columns[0].values) for name, columns in printed.lists.items()}
     row_counts.update(printed.row_counts)
@@ -234,7 +236,7 @@ def _full_listing_hint(printed: PrintedAnswer) -> str:
     return wrap_cell_text(f"all numbers: .table(){'; lists: ' if lists else ''}{', '.join(lists)}")
 
 
-def _html_heading(printed: PrintedAnswer) -> str:
+def _html_heading(printed: PrintedAnswerContents) -> str:
     """The heading as an HTML paragraph, its first line in bold letters."""
     answer, *other_lines = map(escape, filter(None, printed.heading))
     return f"<p><b>{answer}</b>{''.join(f'<br>{line}' for line in other_lines)}</p>"

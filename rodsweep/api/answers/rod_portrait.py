@@ -7,7 +7,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from ...config.document.call_arguments import refusing_wrong_arguments
+from ...config.document.call_argument_errors import refusing_wrong_arguments
 from ...post.figures.request import FigureClass
 from ...post.rod_portrait.paragraph import paragraph
 from ...post.rod_portrait.portrait_drawing import draw_rod_portrait
@@ -32,8 +32,8 @@ class RodPortrait:
     `paragraph` describes the rod.
 
     Every result behind the picture is an `Answer`: `thresholds`; `criticality` and `branch`, None if the task
-    could not be solved; `modes` by kind of threshold; `cycles` by force. `missing_result_reasons` has the
-    reason why a result could not be solved, by task.
+    could not be solved; `modes` by kind of threshold; `cycles` by force. `missing` has the reason why a
+    result could not be solved, by task.
     """
 
     rod: str
@@ -66,7 +66,10 @@ class RodPortrait:
     def modes(self) -> dict[str, Answer]:
         """Leading modes at the first threshold of each kind, by kind: onset, hopf. A kind without a threshold
         has no entry."""
-        return {kind: self._task_answer(view) for kind, (_, view) in self.results.modes.items()}
+        return {
+            kind: self._task_answer(view)
+            for kind, (_, view) in self.results.modes_at_first_thresholds.items()
+        }
 
     @property
     def cycles(self) -> dict[float, Answer]:

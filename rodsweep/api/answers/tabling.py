@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 import xarray as xr
 
-from ...config.document.call_arguments import refusing_wrong_arguments
+from ...config.document.call_argument_errors import refusing_wrong_arguments
 from ...errors import InputError, short_repr
 from ...post.tables.tables import Tables
 from ...results.file.view import ResultView, read_view
@@ -43,8 +43,8 @@ def table(data: TableSource, name: str | None = None, *, columns: Sequence[str] 
 
 
 def view_of_result(data: Any, example: str) -> ResultView:
-    """View of a result, which figures and tables read. Raises InputError, with the example call `example`, if
-    `data` is not a result."""
+    """The view of a result from which figures and tables are made. Raises InputError, with the example call
+    `example`, if `data` is not a result."""
     if isinstance(data, str | os.PathLike):
         return read_view(require_file_path(data, example))
     if not isinstance(data, Answer | xr.Dataset):

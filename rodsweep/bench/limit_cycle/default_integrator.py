@@ -17,8 +17,9 @@ from ...solve.motion.time_scheme import TimeScheme
 from ..study import TimedMethod
 
 MAX_TOLERANCE_WITH_TIGHT_NEWTON = 3e-7
-"""Newton's method has the tolerance TIGHT_NEWTON_TOLERANCE_RATIO at integrator tolerances up to this number,
-because the default tolerance would limit the accuracy of ARKIMEX 5."""
+"""At integrator tolerances up to this number, the tolerance of Newton's method is
+TIGHT_NEWTON_TOLERANCE_RATIO times the integrator tolerance; the larger default ratio would limit the accuracy
+of ARKIMEX 5."""
 TIGHT_NEWTON_TOLERANCE_RATIO = 0.03
 """Convergence tolerance of Newton's method divided by the tolerance of the integrator, at integrator
 tolerances up to MAX_TOLERANCE_WITH_TIGHT_NEWTON."""
@@ -53,13 +54,13 @@ class IntegratorWithTolerances:
     settling_tolerances: tuple[float, ...] = ()
 
     def following_contenders(self) -> list[TimedMethod]:
-        """Contenders of the race CYCLE_FOLLOWING_RACE, which follow a cycle in time: one for each of
+        """Contenders of the race CYCLE_FOLLOWING_RACE_NAME, which follow a cycle in time: one for each of
         `following_tolerances`."""
         return [self._method_at_tolerance(tolerance) for tolerance in self.following_tolerances]
 
     def settling_contenders(self) -> list[TimedMethod]:
-        """Contenders of the race SETTLING_TO_CYCLE_RACE, which integrate until the motion is periodic: one
-        for each of `settling_tolerances`."""
+        """Contenders of the race SETTLING_TO_CYCLE_RACE_NAME, which integrate until the motion is periodic:
+        one for each of `settling_tolerances`."""
         return [self._method_at_tolerance(tolerance) for tolerance in self.settling_tolerances]
 
     def _method_at_tolerance(self, tolerance: float) -> TimedMethod:

@@ -24,7 +24,7 @@ from .tracking import (
 )
 
 NEAR_HOPF_F = 27.43
-"""Force F at a distance of 0.003 above the Hopf point, where a motion approaches the cycle very slowly."""
+"""A force F only 0.003 above the Hopf point, where a motion approaches the cycle very slowly."""
 SOLVE_CYCLE_METHOD_NAME = "solve_cycle"
 """Name of rodsweep's `solve_cycle` in the table."""
 SETTLING_METHOD_NAME_PREFIX = "waiting, "
@@ -37,17 +37,19 @@ SETTLING_PERIOD_COUNT = 15
 class SettlingMethod:
     """A method that reaches the limit cycle from a given start.
 
-    force: F. name: name of the method. setting: tolerance. tip_return_count: number of returns of the tip
-    until the motion is periodic; nan if the motion does not become periodic. error: relative error of period
-    and largest tip y. run: the timed function. full_to_run_time_ratio: duration of the complete method
-    divided by the duration of `run`. failed_tolerances: looser tolerances at which the integration failed.
+    force: F. name: name of the method. setting: text of the integrator's tolerance, "" for `solve_cycle`.
+    tip_return_count: number of returns of the tip until the motion is periodic; nan if the motion does not
+    become periodic. relative_error: the larger of the relative errors of the period and of the largest tip y;
+    inf if the cycle is not reached. run: the timed function. full_to_run_time_ratio: duration of the complete
+    method divided by the duration of `run`. failed_tolerances: looser tolerances at which the integration
+    failed.
     """
 
     force: float
     name: str
     setting: str
     tip_return_count: float
-    error: float
+    relative_error: float
     run: Callable[[], object]
     full_to_run_time_ratio: float = 1.0
     failed_tolerances: tuple[str, ...] = ()
@@ -69,13 +71,13 @@ class SettlingMethod:
         about_text = "about " if self.full_to_run_time_ratio != 1 else ""
         milliseconds = f"{about_text}{1e3 * self.full_to_run_time_ratio * timed.median_seconds:.0f}"
         returns = f"{about_text}{self.tip_return_count:.0f}"
-        return row | {"returns": returns, "milliseconds": milliseconds, "error": self.error}
+        return row | {"returns": returns, "milliseconds": milliseconds, "error": self.relative_error}
 
 
 def compare_settling(reference: ReferenceCycle, contenders: Sequence[TimedMethod], round_count: int) -> str:
     """Runs all methods that reach the cycle, at F = 50 and near the Hopf point, and returns the table of the
     methods with its explanation. reference: reference cycle at F = 50. contenders: contenders of the race
-    SETTLING_TO_CYCLE_RACE."""
+    SETTLING_TO_CYCLE_RACE_NAME. round_count: number of timed rounds."""
     settings = grouped_by_fields(contenders, "method")
     waiting = {method: _integrate_until_periodic(reference, runs) for (method,), runs in settings.items()}
     cycle = solve_cycle_at_force(CYCLE_FORCE)
@@ -86,7 +88,8 @@ def compare_settling(reference: ReferenceCycle, contenders: Sequence[TimedMethod
 
 
 def _solve_cycle_method(force: float, periods: float, error: float) -> SettlingMethod:
-    """The method `solve_cycle` at a force."""
+    """The method `solve_cycle` at the force F = `force`. periods: number of returns of the tip while the
+    motion is integrated. error: the larger of the relative errors of the period and of the largest tip y."""
     return SettlingMethod(
         force, SOLVE_CYCLE_METHOD_NAME, "", periods, error, partial(solve_cycle_at_force, force)
     )
@@ -115,9 +118,10 @@ def _cycle_error(reference: ReferenceCycle, period: float, height: float) -> flo
 
 
 def _integrate_until_periodic(reference: ReferenceCycle, contenders: Sequence[TimedMethod]) -> SettlingMethod:
-    """Integration at the loosest tolerance at which two successive returns agree, and period and largest tip
-    y are accurate, within PERIODICITY_TOLERANCE; without such a tolerance, a method whose `reaches_cycle` is
-    False. contenders: contenders of one integrator, from the loosest tolerance."""
+    """The integration at the loosest tolerance at which two successive returns agree within
+    PERIODICITY_TOLERANCE, and period and largest tip y have at most this relative error. If no tolerance
+    suffices, a method whose `reaches_cycle` is False. contenders: contenders of one integrator, from the
+    loosest tolerance."""
     start = leading_mode(reference.system).state(START_DEFLECTION)
     task = IntegrationTask(reference.system, start, SETTLING_PERIOD_COUNT * reference.period)
     name = SETTLING_METHOD_NAME_PREFIX + contenders[0].method
@@ -142,8 +146,9 @@ def _integrate_until_periodic(reference: ReferenceCycle, contenders: Sequence[Ti
 
 
 def _methods_near_hopf(settled_contenders: Sequence[TimedMethod]) -> list[SettlingMethod]:
-    """Methods that reach the cycle near the Hopf point. The number of periods until an integrated motion is
-    periodic is estimated from the largest Floquet multiplier."""
+    """Methods that reach the cycle near the Hopf point: `solve_cycle`, and the integrators
+    `settled_contenders`. The number of periods until an integrated motion is periodic is estimated from the
+    largest Floquet multiplier."""
     cycle = solve_cycle_at_force(NEAR_HOPF_F)
     task = IntegrationTask(
         *system_and_state_on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period

@@ -1,13 +1,13 @@
 """The limit-cycle benchmark: a cycle followed in time, reached by integration, and solved by collocation. The
-contenders of CYCLE_FOLLOWING_RACE and SETTLING_TO_CYCLE_RACE integrate an `IntegrationTask` and return a
-`Trajectory`. The settings of each method are tolerances, from the loosest."""
+contenders of CYCLE_FOLLOWING_RACE_NAME and SETTLING_TO_CYCLE_RACE_NAME integrate an `IntegrationTask` and
+return a `Trajectory`. The settings of each method are tolerances, from the loosest."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 from math import isfinite, log, nan
 
 from ...model.parameters import NONLINEAR_ROD_PARAMETER_NAMES
-from ...solve.cycle.reference_rod import warm_up
+from ...solve.cycle.rod_with_known_cycle import warm_up
 from ...wording import counted
 from ..peers import PeerContribution
 from ..study import BenchmarkReport, Measurement, every_nth_setting, grouped_by_fields, markdown_table
@@ -29,9 +29,9 @@ ROUND_COUNT = 9
 """Number of timed rounds."""
 QUICK_ROUND_COUNT = 1
 """Number of timed rounds of a quick run."""
-CYCLE_FOLLOWING_RACE = "following"
+CYCLE_FOLLOWING_RACE_NAME = "following"
 """Name of the race in which integrators follow a cycle for some periods."""
-SETTLING_TO_CYCLE_RACE = "waiting"
+SETTLING_TO_CYCLE_RACE_NAME = "waiting"
 """Name of the race in which integrators run until the motion is periodic."""
 ERROR_NAMES_BY_PANEL = {
     "error of the period": "period_error",
@@ -47,7 +47,10 @@ def run_limit_cycle_study(quick: bool, peers: PeerContribution) -> BenchmarkRepo
     warm_up()
     round_count, stride = (QUICK_ROUND_COUNT, 2) if quick else (ROUND_COUNT, 1)
     reference = solve_reference()
-    following = [*DEFAULT_INTEGRATOR.following_contenders(), *peers.contenders_of_race(CYCLE_FOLLOWING_RACE)]
+    following = [
+        *DEFAULT_INTEGRATOR.following_contenders(),
+        *peers.contenders_of_race(CYCLE_FOLLOWING_RACE_NAME),
+    ]
     measurements = measure_cycle_following(reference, every_nth_setting(following, stride), round_count)
     blocks = [
         introduction(round_count),
@@ -55,7 +58,10 @@ def run_limit_cycle_study(quick: bool, peers: PeerContribution) -> BenchmarkRepo
         cycle_following_table(measurements),
         time_at_error_table(measurements),
     ]
-    settling = [*DEFAULT_INTEGRATOR.settling_contenders(), *peers.contenders_of_race(SETTLING_TO_CYCLE_RACE)]
+    settling = [
+        *DEFAULT_INTEGRATOR.settling_contenders(),
+        *peers.contenders_of_race(SETTLING_TO_CYCLE_RACE_NAME),
+    ]
     blocks.append(compare_settling(reference, settling, round_count))
     sweep_measurements = measure_sweep_points(QUICK_RODS if quick else RODS, round_count)
     blocks += [sweep_introduction(), sweep_table(sweep_measurements)]
@@ -73,7 +79,7 @@ def run_limit_cycle_study(quick: bool, peers: PeerContribution) -> BenchmarkRepo
 
 
 def introduction(round_count: int) -> str:
-    """Description of the race CYCLE_FOLLOWING_RACE for the report."""
+    """Description of the race CYCLE_FOLLOWING_RACE_NAME for the report."""
     k1, k2, gamma3, gamma1 = (FIG5_ROD.values[name] for name in NONLINEAR_ROD_PARAMETER_NAMES[1:])
     return (
         f"The limit cycle of k1 = {k1:g}, k2 = {k2:g}, gamma3 = {gamma3:g}, gamma1 = {gamma1:g}, "
@@ -87,7 +93,8 @@ def introduction(round_count: int) -> str:
 
 
 def cycle_following_table(measurements: Sequence[Measurement]) -> str:
-    """Table of the race CYCLE_FOLLOWING_RACE: steps, time and errors of every method at every tolerance."""
+    """Table of the race CYCLE_FOLLOWING_RACE_NAME: steps, time and errors of every method at every
+    tolerance."""
     no_values = dict.fromkeys(("steps", "period_error", "amplitude_error"), nan)
     return markdown_table(
         "method | tolerance | steps a period | ms a period | error of period | error of amplitude",
@@ -102,8 +109,8 @@ def cycle_following_table(measurements: Sequence[Measurement]) -> str:
 
 
 def time_at_error_table(measurements: Sequence[Measurement]) -> str:
-    """Table of the race CYCLE_FOLLOWING_RACE at equal error, after a sentence that explains it: time of every
-    method, interpolated at the error TARGET_ERROR."""
+    """Table of the race CYCLE_FOLLOWING_RACE_NAME at equal error, after a sentence that explains it: time of
+    every method, interpolated at the error TARGET_ERROR."""
     times = {}
     for (method,), runs in grouped_by_fields(measurements, "method").items():
         errors = [m.error for m in runs]

@@ -98,8 +98,8 @@ class SweptRod:
 
 
 def swept_rod(rod: Rod, accuracy: float) -> SweptRod:
-    """The rod `rod` with its reference cycle, and with the solved untimed points of the sweeps. accuracy:
-    relative accuracy of the cycles."""
+    """The rod `rod` with its reference cycle and, for each sweep, the cycle of the last untimed point.
+    accuracy: relative accuracy of the cycles."""
     neighbours: dict[str, CycleStart | None] = {}
     workspace = NewtonWorkspace()
     for parameter_name in SWEPT_PARAMETERS:
@@ -120,8 +120,9 @@ def rod_earlier_in_sweep(rod: Rod, parameter_name: str, step_count: int) -> Rod:
 
 
 def solve_timed_points(parameter_name: str, accuracy: float, rod: SweptRod) -> CycleOutcome:
-    """The last cycle of the timed points of a sweep along `parameter_name`, each solved from its neighbour;
-    raises ArithmeticError if a point has no stable cycle. accuracy: relative."""
+    """The cycle of the last timed point of a sweep along `parameter_name`; every point is solved from the
+    cycle of its neighbour. accuracy: relative accuracy. Raises ArithmeticError if a point has no stable
+    cycle."""
     start = rod.start_cycle_by_parameter[parameter_name]
     for k in range(TIMED_POINT_COUNT - 1, -1, -1):
         point = rod_earlier_in_sweep(rod.rod, parameter_name, k)
@@ -176,8 +177,8 @@ def measure_sweep_points(points: Sequence[Rod], round_count: int) -> list[Measur
 
 
 def cycle_measurement_fields(exact: MeshConvergedCycle, cycle: CycleOutcome) -> dict[str, Any]:
-    """Fields of `Measurement` for a cycle: errors, error estimate, mesh, and number of Floquet multipliers.
-    Mesh and number are missing if there is no orbit."""
+    """Fields of `Measurement` for a cycle: errors, error estimate, and, if the cycle has an orbit, mesh and
+    number of Floquet multipliers. exact: reference cycle."""
     errors = exact.errors_of(cycle.measures.period, cycle.measures.tip_y_max)
     values = errors | {"order": float(cycle.order) if cycle.elements == 1 else nan}
     values["estimate"] = cycle.errors.largest_weighted_error

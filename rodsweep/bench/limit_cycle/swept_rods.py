@@ -8,7 +8,7 @@ from ..spectrum.arm_spectra import FIVE_SEGMENT_PROFILE
 TWO_SEGMENT_PROFILE = Profile(
     (0.0, 0.4, 0.4, 1.0), tuple((r**2, r**2, r**4, 1.0, 1.0, r**2) for r in (1.0, 1.0, 0.6, 0.6))
 )
-"""Profile of an arm whose outer 0.6 of the length has 0.6 of the radius."""
+"""Profile of an arm of two segments: the outer 60 % of the length have 0.6 times the radius at the clamp."""
 RODS = (
     Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0),
     Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=0.5),

@@ -69,8 +69,8 @@ SMALL_STEP_COUNT = 20
 SPLINE_DEGREE = 7
 """Degree of the interpolating spline through the states after the small steps."""
 RETURN_NEWTON_STEP_COUNT = 2
-"""Number of Newton steps that correct a return found on the spline, which has errors of 1e-8 rad."""
-SMALL_STEPS_DURATION_RATIO = 1.25
+"""Number of Newton steps that correct a return found on the spline. The spline has errors of 1e-8 rad."""
+SMALL_STEPS_TIME_OVER_REPEATED_STEP = 1.25
 """Ratio of the total duration of the small steps to the repeated step. With the ratio 1 the return could be
 missed."""
 
@@ -174,7 +174,7 @@ def tip_angle_returns(system: ExplicitSystem, run: Trajectory) -> TipAngleReturn
     states = []
     tip_y_max_between_returns = []
     for k in upward_steps:
-        step = SMALL_STEPS_DURATION_RATIO * (run.times[k + 1] - run.times[k])
+        step = SMALL_STEPS_TIME_OVER_REPEATED_STEP * (run.times[k + 1] - run.times[k])
         fine_run = _integrate_in_small_steps(system, run.states[k], step)
         duration = float(_spline(fine_run.times, fine_run.states @ row).roots(extrapolate=False)[0])
         for _ in range(RETURN_NEWTON_STEP_COUNT):
@@ -190,7 +190,8 @@ def tip_angle_returns(system: ExplicitSystem, run: Trajectory) -> TipAngleReturn
 
 
 def tip_y_max_near_step(system: ExplicitSystem, run: Trajectory, k: int) -> float:
-    """Largest y of the tip, in L, during the step of a run to its k-th state and the step after."""
+    """Largest y of the tip, in L, during two steps of a run: the step that ends at its k-th state, k >= 1,
+    and the next step."""
     fine_run = _integrate_in_small_steps(system, run.states[k - 1], run.times[k + 1] - run.times[k - 1])
     height = _spline(fine_run.times, system.tip_coordinates(fine_run.states)[1])
     return float(height(height.derivative().roots(extrapolate=False)).max())

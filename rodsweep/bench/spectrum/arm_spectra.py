@@ -1,6 +1,6 @@
 """Spectra of arms that vary along their length, so that D has no closed form.
 
-The contenders of the race ARM_SPECTRUM_RACE are functions of `UncachedArms` that return at least the
+The contenders of the race ARM_SPECTRUM_RACE_NAME are functions of `UncachedArms` that return at least the
 MODE_COUNT leading eigenvalues, (modes,).
 """
 
@@ -21,7 +21,7 @@ from ...wording import counted
 from ..study import Measurement, TimedMethod, measure_case
 from .rodsweep_and_exact_spectra import (
     CERTIFIED_NAME,
-    KRYLOV_SCHUR,
+    KRYLOV_SCHUR_NAME,
     MODE_COUNT,
     PENCIL_GROUP,
     RODSWEEP_GROUP,
@@ -32,7 +32,7 @@ from .rodsweep_and_exact_spectra import (
     table_by_case,
 )
 
-ARM_SPECTRUM_RACE = "arms"
+ARM_SPECTRUM_RACE_NAME = "arms"
 """Name of the race of spectra of arms."""
 FIVE_SEGMENT_PROFILE = Profile(
     (0.0, 0.2, 0.2, 0.4, 0.4, 0.6, 0.6, 0.8, 0.8, 1.0),
@@ -56,7 +56,7 @@ mesh more accurate."""
 TARGET_ERROR = 1e-10
 """Relative error at which the methods are compared."""
 MAX_RESOLVED_W_RATIO_OF_REFERENCE = 16.0
-"""The elements of the reference D resolve moduli |w| up to this number times the |w| of the arm."""
+"""The reference D at w has elements that resolve moduli up to this number times |w|."""
 NEWTON_STEP_COUNT = 3
 """Number of Newton steps with the reference D."""
 
@@ -120,7 +120,7 @@ def _cheapest_time_cell(measurements: Sequence[Measurement]) -> str:
 
 
 def mesh_of_arm(rod: Rod, order: int) -> ArmMesh:
-    """Mesh of an arm with as few elements of the order `order` as resolve the variation of the arm."""
+    """Mesh of an arm with elements of the order `order`; their edges suffice for ELEMENT_EDGE_ACCURACY."""
     return ArmMesh(arm_mesh(rod, MODE_COUNT, ELEMENT_EDGE_ACCURACY).edges, order)
 
 
@@ -139,14 +139,16 @@ def _krylov_schur(rod: Rod, order: int) -> Complex:
 
 
 def contenders() -> list[TimedMethod]:
-    """Contenders of ARM_SPECTRUM_RACE: rodsweep without and with certificate, and Krylov-Schur at all
+    """Contenders of ARM_SPECTRUM_RACE_NAME: rodsweep without and with certificate, and Krylov-Schur at all
     orders."""
     certify_options = {UNCERTIFIED_NAME: False, CERTIFIED_NAME: True}
     runs = {
         name: partial(solve_next_arm, rodsweep_spectrum, certify) for name, certify in certify_options.items()
     }
     krylov = [
-        TimedMethod(KRYLOV_SCHUR, str(order), PENCIL_GROUP, partial(solve_next_arm, _krylov_schur, order))
+        TimedMethod(
+            KRYLOV_SCHUR_NAME, str(order), PENCIL_GROUP, partial(solve_next_arm, _krylov_schur, order)
+        )
         for order in ELEMENT_ORDERS
     ]
     return [TimedMethod(name, "", RODSWEEP_GROUP, run) for name, run in runs.items()] + krylov

@@ -21,7 +21,7 @@ UNCERTIFIED_NAME = "rodsweep, certificate off"
 """Name of rodsweep without certificate in the tables."""
 CERTIFIED_NAME = "rodsweep, certificate on"
 """Name of rodsweep with certificate in the tables."""
-KRYLOV_SCHUR = "Krylov-Schur alone, same pencil"
+KRYLOV_SCHUR_NAME = "Krylov-Schur alone, same pencil"
 """Name of SLEPc's Krylov-Schur on rodsweep's pencil in the tables."""
 RODSWEEP_GROUP, PENCIL_GROUP = "this tool", "the same pencil"
 """Groups of methods in the figure: rodsweep, and eigensolvers on rodsweep's pencil."""
@@ -55,7 +55,7 @@ CORRECT_DIGIT_COUNT = 30
 """Number of correct decimal digits of the eigenvalues."""
 GUARD_DIGIT_COUNT = 25
 """Number of additional digits in the computation, more than are lost by cancellation in D."""
-SECANT_STEP = mp.mpf(10) ** -12
+RELATIVE_SECANT_STEP = mp.mpf(10) ** -12
 """Relative distance between the two starting points of the secant method."""
 MAX_ROOT_DISTANCE_IN_ERRORS = 20
 """Largest distance of a root from its starting value, divided by the estimated error of the starting value; a
@@ -98,11 +98,15 @@ def exact_spectrum(rod: Rod, mode_count: int) -> list[Any]:
         D = multiprecision_determinant(rod)
         for w, error in zip(spectrum.eigenvalues, spectrum.error_estimate, strict=True):
             start = mp.mpc(complex(w))
-            root = mp.findroot(D, (start, start * (1 + SECANT_STEP)), tol=SECANT_STEP**5, verify=False)
+            root = mp.findroot(
+                D, (start, start * (1 + RELATIVE_SECANT_STEP)), tol=RELATIVE_SECANT_STEP**5, verify=False
+            )
             # Near a simple root |D| is proportional to the distance: the limit is |D| at the relative
             # distance 10^-CORRECT_DIGIT_COUNT.
             rounding_limit = (
-                abs(D(root * (1 + SECANT_STEP))) * mp.mpf(10) ** -CORRECT_DIGIT_COUNT / SECANT_STEP
+                abs(D(root * (1 + RELATIVE_SECANT_STEP)))
+                * mp.mpf(10) ** -CORRECT_DIGIT_COUNT
+                / RELATIVE_SECANT_STEP
             )
             if abs(root - start) > MAX_ROOT_DISTANCE_IN_ERRORS * error or abs(D(root)) > rounding_limit:
                 raise ArithmeticError(f"{rod}: {complex(w)} does not lead to a root of D")

@@ -1,7 +1,7 @@
 """The spectrum benchmark: time and error of the leading eigenvalues of the paper's rods and of hard rods.
 
-The contenders of the race SPECTRUM_RACE are functions of a `Rod` that return at least the MODE_COUNT leading
-eigenvalues, (modes,).
+The contenders of the race SPECTRUM_RACE_NAME are functions of a `Rod` that return at least the MODE_COUNT
+leading eigenvalues, (modes,).
 """
 
 from collections.abc import Sequence
@@ -30,10 +30,10 @@ from ..study import (
     result_or_error,
     time_runs,
 )
-from .arm_spectra import ARM_SPECTRUM_RACE, arm_table, measure_arm_spectra
+from .arm_spectra import ARM_SPECTRUM_RACE_NAME, arm_table, measure_arm_spectra
 from .rodsweep_and_exact_spectra import (
     CERTIFIED_NAME,
-    KRYLOV_SCHUR,
+    KRYLOV_SCHUR_NAME,
     MODE_COUNT,
     PENCIL_GROUP,
     RODSWEEP_GROUP,
@@ -48,7 +48,7 @@ from .rodsweep_and_exact_spectra import (
 
 ELEMENT_ORDERS = (8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 40, 56, 80)
 """Orders of the elements of rodsweep's pencil on which eigensolvers are run."""
-SPECTRUM_RACE = "spectrum"
+SPECTRUM_RACE_NAME = "spectrum"
 """Name of the race of spectra of rods."""
 PAPER_RODS = {
     "Fig. 2a": (1e4, 1e4, 1e-4, 60.0),
@@ -73,7 +73,7 @@ ROUND_COUNT = 25
 QUICK_ROUND_COUNT = 2
 """Number of timed rounds of a quick run."""
 QUICK_STRIDE = 3
-"""n: a quick run uses every n-th size on hard rods and arms."""
+"""Number n: a quick run uses only every n-th size on hard rods and arms."""
 
 
 def run_spectrum_study(quick: bool, peers: PeerContribution) -> BenchmarkReport:
@@ -87,12 +87,12 @@ def run_spectrum_study(quick: bool, peers: PeerContribution) -> BenchmarkReport:
         for F in np.linspace(0.1 * max_F, max_F, FORCE_COUNT)
     ]
     exact = [exact_spectrum(rod, MODE_COUNT) for rod in rods]
-    methods = contenders() + peers.contenders_of_race(SPECTRUM_RACE)
+    methods = contenders() + peers.contenders_of_race(SPECTRUM_RACE_NAME)
     targets = TARGET_ERRORS[: 1 if quick else None]
     blocks = [time_at_equal_error(methods, rods, exact, target, round_count) for target in targets]
     measurements = measure_hard_rods(every_nth_setting(methods, stride), round_count)
     arms = measure_arm_spectra(
-        every_nth_setting(peers.contenders_of_race(ARM_SPECTRUM_RACE), stride), round_count
+        every_nth_setting(peers.contenders_of_race(ARM_SPECTRUM_RACE_NAME), stride), round_count
     )
     blocks += [
         *peers.contender_notes,
@@ -190,25 +190,26 @@ def hard_rod_cell(measurements: Sequence[Measurement]) -> str:
 
 
 def mesh_of_total_order(order: int) -> Resolution:
-    """Mesh of one element of the order `order`, or of several equal elements with this total order if the
-    order exceeds its maximum."""
+    """Mesh of one element of the order `order` or, if this exceeds the maximum order of an element, of
+    several equal elements with at least this total order."""
     elements = ceil(order / RESOLUTION_SETTINGS.max_order)
     return Resolution(elements, ceil(order / elements))
 
 
 def krylov_schur(rod: Rod, order: int) -> Complex:
     """Leading eigenvalues, (n,) with n at most MODE_COUNT + 1, of a rod by SLEPc's Krylov-Schur, without
-    Newton's method for D. order: order of the pencil."""
+    Newton's method for D. order: total order of the elements."""
     solver = uniform_solver(mesh_of_total_order(order))
     eigenvalues = solver.solve(rod, transverse_problem(rod).shift, MODE_COUNT, to_rounding=True)
     return leading_eigenvalues(eigenvalues, MODE_COUNT + 1)
 
 
 def contenders() -> list[TimedMethod]:
-    """Contenders of SPECTRUM_RACE: rodsweep without and with certificate, and Krylov-Schur at all orders."""
+    """Contenders of SPECTRUM_RACE_NAME: rodsweep without and with certificate, and Krylov-Schur at all
+    orders."""
     krylov = {str(size): partial(krylov_schur, order=size) for size in ELEMENT_ORDERS}
     return [
         TimedMethod(UNCERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=False)),
         TimedMethod(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=True)),
-        *(TimedMethod(KRYLOV_SCHUR, size, PENCIL_GROUP, run) for size, run in krylov.items()),
+        *(TimedMethod(KRYLOV_SCHUR_NAME, size, PENCIL_GROUP, run) for size, run in krylov.items()),
     ]

@@ -66,7 +66,7 @@ def measure_eigenvalue_following(
     """Measurements of sweeps of certified spectra on one rank: for each pair of grids first
     EIGENVALUE_FOLLOWING_METHOD, then POINT_BY_POINT_METHOD.
 
-    run: see `RunCase` of `rodsweep.bench.sweep.study`.
+    run: see `CaseRunner` of `rodsweep.bench.sweep.study`.
     """
     measurements = []
     for grids in QUICK_GRID_PAIRS if quick else GRID_PAIRS:

@@ -1,8 +1,9 @@
 """Runs of sweeps started as by a user: time, memory of each rank, and size of the files.
 
 The caller gives the first arguments of the measured command. Further arguments are appended: a directory, in
-which every rank writes its peak memory in bytes into a file FIRST_RANK_MEMORY_PREFIX-PID or
-OTHER_RANKS_MEMORY_PREFIX-PID; the kind of solver, SOLVED, INSTANT or KILLED; and the arguments of `rodsweep`.
+which every rank writes its peak memory in bytes into a file FIRST_RANK_MEMORY_FILE_PREFIX-PID or
+OTHER_RANKS_MEMORY_FILE_PREFIX-PID; the kind of solver, SOLVED, INSTANT or KILLED; and the arguments of
+`rodsweep`.
 """
 
 import os
@@ -24,9 +25,9 @@ from ...results.run.journal import journal_directory
 
 RESULT, NOTES = "c.h5", "notes"
 """Names of the result file and of the folder with the ranks' peak memory, in the directory of a sweep."""
-FIRST_RANK_MEMORY_PREFIX = "first"
+FIRST_RANK_MEMORY_FILE_PREFIX = "first"
 """Prefix of the name of the file with the peak memory of the first rank."""
-OTHER_RANKS_MEMORY_PREFIX = "other"
+OTHER_RANKS_MEMORY_FILE_PREFIX = "other"
 """Prefix of the names of the files with the peak memory of the remaining ranks."""
 SOLVED, INSTANT, KILLED = "solved", "instant", "killed"
 """Kinds of solver: the real solver; random results at once; random results at once, and the process is killed
@@ -79,8 +80,8 @@ def write_spectrum_case(directory: Path, name: str, point_count: int, solver_kin
 
 
 def write_cycle_case(directory: Path, point_count: int, solver_kind: str) -> SweepCase:
-    """A sweep of limit cycles whose costs differ much, in random order; its config is written into the new
-    directory `directory`."""
+    """A sweep of `point_count` limit cycles whose costs differ much, in random order; its config is written
+    into the new directory `directory`."""
     directory.mkdir()
     rows = [f"{F!r},1e4,1e2,1e-2,1" for F in shuffled_forces(point_count).tolist()]
     (directory / "points.csv").write_text("\n".join(["F,k1,k2,gamma3,gamma1", *rows]) + "\n")
@@ -116,7 +117,8 @@ class CommandRunCost:
     solver_seconds: float
     """Time in the solver, in s, summed over the ranks."""
     first_and_other_rank_peak_bytes: tuple[int, ...]
-    """Peak memory of the first rank, and largest peak memory of the other ranks, in bytes."""
+    """Peak memory of the first rank and, if there are several ranks, largest peak memory of the other ranks,
+    in bytes."""
     file_bytes: int
     """Size of the result files in bytes."""
     journal_bytes: int
@@ -137,26 +139,26 @@ def launcher_arguments(rank_count: int) -> list[str]:
 
 def run_case(command: Sequence[str], case: SweepCase, rank_count: int, fresh: bool = True) -> CommandRunCost:
     """Runs a sweep on `rank_count` ranks and returns its measurements. Raises EnvironmentIncomplete if a run
-    that is not to be killed fails.
+    fails that is not killed on purpose.
 
-    command: first arguments of the measured command.
+    command: first arguments of the measured command. fresh: whether an existing result file is replaced.
     """
-    seconds_of_others = _processor_seconds_without_children()
+    seconds_of_others = _processor_seconds_of_others()
     start = time.monotonic()
     full_command = [*launcher_arguments(rank_count), *command]
     solver_kind = case.solver_kind
     processes = [
-        _start_command(full_command, solver_kind, directory, fresh) for directory in case.directories
+        _start_sweep_process(full_command, solver_kind, directory, fresh) for directory in case.directories
     ]
     stated_seconds = [_wait_for_printed_seconds(process, solver_kind) for process in processes]
     seconds = time.monotonic() - start
-    other_load = np.maximum(0.0, (_processor_seconds_without_children() - seconds_of_others) / seconds)
+    other_load = np.maximum(0.0, (_processor_seconds_of_others() - seconds_of_others) / seconds)
     files = [directory / RESULT for directory in case.directories]
     solve_times = [
         _solver_time_and_busy_fraction(file) if solver_kind == SOLVED else (0.0, nan) for file in files
     ]
     journals = [journal for file in files for journal in journal_directory(file).glob("rank-*")]
-    prefixes = (FIRST_RANK_MEMORY_PREFIX, OTHER_RANKS_MEMORY_PREFIX)[:rank_count]
+    prefixes = (FIRST_RANK_MEMORY_FILE_PREFIX, OTHER_RANKS_MEMORY_FILE_PREFIX)[:rank_count]
     return CommandRunCost(
         seconds=seconds,
         printed_seconds=max(stated_seconds),
@@ -169,7 +171,7 @@ def run_case(command: Sequence[str], case: SweepCase, rank_count: int, fresh: bo
     )
 
 
-def _start_command(
+def _start_sweep_process(
     command: Sequence[str], solver_kind: str, directory: Path, fresh: bool
 ) -> subprocess.Popen[str]:
     notes = directory / NOTES
@@ -199,21 +201,21 @@ def _wait_for_printed_seconds(process: subprocess.Popen[str], solver_kind: str) 
 
 def _peak_memory(case: SweepCase, rank: str) -> int:
     """Peak memory of the first rank, or largest peak memory of the other ranks, in bytes. rank:
-    FIRST_RANK_MEMORY_PREFIX or OTHER_RANKS_MEMORY_PREFIX."""
+    FIRST_RANK_MEMORY_FILE_PREFIX or OTHER_RANKS_MEMORY_FILE_PREFIX."""
     notes = (file for directory in case.directories for file in (directory / NOTES).glob(f"{rank}-*"))
     return max((int(file.read_text()) for file in notes), default=0)
 
 
 def _solver_time_and_busy_fraction(file: Path) -> tuple[float, float]:
-    """(time in the solver in s, fraction of the time of all ranks that was spent on points), from a result
-    file."""
+    """Returns (time in the solver, in s; fraction of the time of all ranks that was spent on points), from a
+    result file."""
     view = read_view(file)
     names = ("rank_busy_seconds", "rank_idle_seconds")
     busy_seconds, idle_seconds = (float(view.attributes[name].sum()) for name in names)
     return float(view.variables["seconds"].sum(dtype=float)), busy_seconds / (busy_seconds + idle_seconds)
 
 
-def _processor_seconds_without_children() -> float:
+def _processor_seconds_of_others() -> float:
     """Processor time, in s, of all processes of the machine except the finished children of this process; nan
     if unknown."""
     try:

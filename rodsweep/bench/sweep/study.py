@@ -52,8 +52,8 @@ points, not on waiting. "Outside the solver" is the ranks' time inside minus the
 loading compiled code, scheduling, storing, and waiting. Memory is the peak of a rank's resident set. A second
 rank gains less while other programs, or the host of a virtual machine, keep processors busy."""
 """Description of the measurements for the report."""
-RunCase = Callable[..., CommandRunCost]
-"""`run_case` with its first argument, the start of the measured command, bound."""
+CaseRunner = Callable[..., CommandRunCost]
+"""Type of `run_case` without its first argument: a function (case, number of ranks, fresh) -> cost."""
 
 
 def run_sweep_study(quick: bool, command: Sequence[str]) -> BenchmarkReport:
@@ -68,14 +68,16 @@ def run_sweep_study(quick: bool, command: Sequence[str]) -> BenchmarkReport:
         solved = measure_solved_sweeps(Path(folder), run, quick, ranks)
         followed = measure_eigenvalue_following(Path(folder), run, quick)
         instant = measure_instant_sweeps(Path(folder), run, quick, ranks)
-    blocks = [INTRODUCTION.strip(), solved_table(solved), following_sweep_table(followed)]
-    blocks += [instant_table(instant), added_point_cost_table(instant)]
+    blocks = [INTRODUCTION.strip(), real_solver_table(solved), following_sweep_table(followed)]
+    blocks += [instant_solver_table(instant), added_point_cost_table(instant)]
     if len(ranks) == 1:
         blocks.append("Two ranks are skipped: there is no mpiexec in the folder of this Python or on PATH.")
     return BenchmarkReport("sweep", "\n\n".join(blocks), [*solved, *followed, *instant])
 
 
-def measure_solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
+def measure_solved_sweeps(
+    folder: Path, run: CaseRunner, quick: bool, ranks: Sequence[int]
+) -> list[Measurement]:
     """Measurements of sweeps of spectra and of limit cycles with the real solver, run in turn."""
     rounds, cycle_rounds = (QUICK_ROUND_COUNT,) * 2 if quick else (ROUND_COUNT, CYCLE_ROUND_COUNT)
     count = QUICK_SPECTRUM_COUNT if quick else SPECTRUM_COUNT
@@ -95,7 +97,7 @@ def measure_solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequen
 
 
 def measure_instant_sweeps(
-    folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]
+    folder: Path, run: CaseRunner, quick: bool, ranks: Sequence[int]
 ) -> list[Measurement]:
     """Measurements of sweeps of all sizes with the instant solver: complete, killed and resumed. ranks:
     numbers of ranks; killed and resumed sweeps have one rank."""
@@ -114,7 +116,7 @@ def measure_instant_sweeps(
     return measurements
 
 
-def measure_in_turn(run: RunCase, planned_runs: Sequence[tuple[SweepCase, int, int]]) -> list[Measurement]:
+def measure_in_turn(run: CaseRunner, planned_runs: Sequence[tuple[SweepCase, int, int]]) -> list[Measurement]:
     """Measurements of sweeps, run in turn; planned_runs: (case, number of ranks, number of rounds)."""
     runs: list[list[CommandRunCost]] = [[] for _ in planned_runs]
     for i in timing_order([rounds for _, _, rounds in planned_runs]):
@@ -157,7 +159,7 @@ def values_of_table_row(m: Measurement) -> dict[str, object]:
     return {"case": m.case, "seconds": m.seconds, "microseconds": microseconds, **m.extra_columns}
 
 
-def solved_table(measurements: Sequence[Measurement]) -> str:
+def real_solver_table(measurements: Sequence[Measurement]) -> str:
     """Table of the sweeps of spectra and limit cycles with the real solver."""
     rows = []
     for m in measurements:
@@ -182,7 +184,7 @@ def solved_table(measurements: Sequence[Measurement]) -> str:
     )
 
 
-def instant_table(measurements: Sequence[Measurement]) -> str:
+def instant_solver_table(measurements: Sequence[Measurement]) -> str:
     """Explained table of the sweeps with the instant solver: complete, killed and resumed."""
     return (
         "The command with an instant solver that returns random eigenvalues: all time is scheduling and "
@@ -235,11 +237,11 @@ def time_file_and_memory_totals(m: Measurement) -> dict[str, float]:
 
 
 def time_growth_exponent(start: Measurement, small: Measurement, large: Measurement) -> float:
-    """Exponent p of growth, t(n) - t(n0) ~ (n - n0)^p; t(n): time of a sweep with n points, n0: points of
+    """Exponent p of growth, t(n) - t(n0) ~ (n - n0)^p; t(n): time of a sweep of n points, n0: points of
     `start`.
 
-    start: the smallest sweep. small, large: two successive sizes. nan if `small` is `start`, or if the time
-    does not grow.
+    start: the smallest sweep. small, large: sweeps of two successive sizes. Returns nan if `small` is
+    `start`, or if the time of a sweep is not above the time of `start`.
     """
     if small is start or min(small.seconds, large.seconds) <= start.seconds:
         return nan

@@ -112,18 +112,18 @@ ARM_INTRODUCTION = (
     "0.6, 1.2, 0.5 and 0.8. rodsweep finds all thresholds in 0 < F < 60 to the requested accuracy of 1e-10."
 )
 """Description of the tables of arms for the report."""
-KIND_TITLES = {ONSET: "onset", HOPF: "Hopf point"}
+THRESHOLD_KIND_NAMES = {ONSET: "onset", HOPF: "Hopf point"}
 """Names of the kinds of thresholds in the tables."""
 ROUND_COUNT = 5
 """Number of timed rounds."""
 QUICK_ROUND_COUNT = 1
 """Number of timed rounds of a quick run."""
-WORK_FIELDS = {
+WORK_FIELD_BY_NAME = {
     "eigenproblems": "eigenproblem_count",
     "determinants": "determinant_count",
     "products": "matrix_vector_product_count",
 }
-"""Field of `FirstThreshold` by name of the number of operations in a measurement."""
+"""Field of `FirstThreshold` with a number of operations, by the name of this number in a measurement."""
 MAX_CORRECT_DIGITS = 16
 """Upper limit of the counted number of correct digits of a threshold."""
 F_MAX = 200.0
@@ -145,7 +145,7 @@ def run_thresholds_study(quick: bool, peers: PeerContribution) -> BenchmarkRepor
     measurements = []
     for group in (cases, ARM_CASES):
         blocks += [ARM_INTRODUCTION] if group is ARM_CASES else []
-        for kind in KIND_TITLES:
+        for kind in THRESHOLD_KIND_NAMES:
             rod_measurements = measure_rods(
                 kind, group, contenders(kind) + peers.contenders_of_race(kind), round_count
             )
@@ -188,7 +188,7 @@ def measure_rods(
     threshold_kind: ONSET or HOPF."""
     measurements = []
     for case in cases:
-        name = f"{case.name}, {KIND_TITLES[threshold_kind]}"
+        name = f"{case.name}, {THRESHOLD_KIND_NAMES[threshold_kind]}"
         measurements += measure_case(
             name, case, contenders, round_count, partial(threshold_measurement_fields, case, threshold_kind)
         )
@@ -203,7 +203,7 @@ def threshold_measurement_fields(
     error = case.error_of(threshold_kind, computed_threshold.force)
     outcome = "missed" if isnan(computed_threshold.force) else f"wrong ({computed_threshold.force:.2f})"
     digits = -log10(min(max(error, 10**-MAX_CORRECT_DIGITS), 1.0))
-    values = {name: getattr(computed_threshold, field) for name, field in WORK_FIELDS.items()}
+    values = {name: getattr(computed_threshold, field) for name, field in WORK_FIELD_BY_NAME.items()}
     values["digits"] = (
         nan if isnan(getattr(case, threshold_kind)) else digits / computed_threshold.eigenproblem_count
     )
@@ -216,7 +216,7 @@ def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
     rods = list(dict.fromkeys(m.case.split(",")[0] for m in measurements))
     rows = []
     for (method, setting), measured in grouped_by_fields(measurements, "method", "setting").items():
-        names = (*WORK_FIELDS, "digits")
+        names = (*WORK_FIELD_BY_NAME, "digits")
         medians = (nan_median(m.extra_columns.get(name, nan) for m in measured) for name in names)
         solve_counts, determinants, products, digits = medians
         work = "" if isnan(solve_counts) else f"{solve_counts:.0f}"
@@ -226,7 +226,8 @@ def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
         row = {"method": method, "setting": setting, "work": work, "digits": digits}
         rows.append(row | {"ms": nan_median(1e3 * m.seconds for m in measured), "errors": " | ".join(errors)})
     return markdown_table(
-        f"{KIND_TITLES[kind]} | setting | ms | eigenproblems | digits an eigenproblem | {' | '.join(rods)}",
+        f"{THRESHOLD_KIND_NAMES[kind]} | setting | ms | eigenproblems | digits an eigenproblem | "
+        + " | ".join(rods),
         "{method} | {setting} | {ms:.1f} | {work} | {digits:.2g} | {errors}",
         rows,
     )

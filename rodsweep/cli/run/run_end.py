@@ -40,8 +40,8 @@ def last_run_attributes(plan: FilePlan) -> dict[str, Any]:
 
 
 def run_history(contributions: Sequence[ReportOfRank], mpi_library: str) -> dict[str, Any]:
-    """Attributes of a file on a run: number of ranks, hosts, MPI library, Slurm job; points and times of each
-    rank."""
+    """Attributes of a result file that describe a run: number of ranks, hosts, MPI library, Slurm job; points
+    and times of each rank. contributions: reports of all ranks."""
     hosts = {contribution.host for contribution in contributions}
     ranks = [contribution.statistics for contribution in contributions[: provenance.MAX_RANK_STATISTICS]]
     numbers = (
@@ -78,7 +78,7 @@ class RunStatistics:
     solved_items: dict[str, int] | None
     """Number of work items for the curves that this run solved, by kind of item: the phrase
     `WorkItems.done_item_phrase`. None if no curves were to be computed."""
-    items_for_next_run: int | None
+    result_count_for_next_run: int | None
     """Number of work items for the curves whose results are stored for the next run, because the curves are
     incomplete; else None."""
 
@@ -94,7 +94,7 @@ class RunStatistics:
                 f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks_text}{per_point_text}"
             )
         if self.solved_items is not None:
-            word = "curves in" if self.items_for_next_run is None else "curves stopped after"
+            word = "curves in" if self.result_count_for_next_run is None else "curves stopped after"
             clauses = [f"{word} {self.sweep_wide_seconds:.2f} s on {ranks_text}"]
             for outcome, number in self.solved_items.items():
                 item, _, action = outcome.partition(" ")
@@ -105,8 +105,8 @@ class RunStatistics:
     def stored_points_clause(self) -> str:
         """Clause with the numbers of points, and of results for the curves, that a stopped run has stored."""
         points_text = f"{counted(self.points_stored_at_end, 'point')} kept"
-        if self.items_for_next_run is not None:
-            results_text = counted(self.items_for_next_run, "result")
+        if self.result_count_for_next_run is not None:
+            results_text = counted(self.result_count_for_next_run, "result")
             return f"{points_text}, {results_text} for the curves kept, the other results are missing"
         if self.interrupted_points:
             return f"{points_text}, {self.interrupted_points} interrupted, to be solved again"

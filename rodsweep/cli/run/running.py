@@ -51,7 +51,7 @@ class _RankRun:
     """The part of a run that this rank executes."""
 
     result_file_writer: ResultFileWriter
-    """The result file, on the first rank, after `_open_result_file`."""
+    """The result file, on the first rank, after `_open_file_and_find_missing_points`."""
 
     def __init__(self, ranks: Ranks, job: Job, output: Path, request: RunRequest, stop: StopRequest):
         from ...solve.backend.petsc import blas_description
@@ -88,8 +88,8 @@ class _RankRun:
                 report_stop(self.ranks, self.stop)
                 return STOPPED_EXIT_STATUS
             self.plan = plan
-        missing = self.ranks.call_on_first_rank(self._open_result_file)
-        items, requested_count = self.shard_solver.items_to_solve(missing)
+        missing = self.ranks.call_on_first_rank(self._open_file_and_find_missing_points)
+        items, requested_count = self.shard_solver.items_to_solve_and_point_count(missing)
         if self.ranks.is_first:
             points = self.job.points.count
             shard_clause = f"; shard {self.shard}" if self.shard.shard_count > 1 else ""
@@ -123,9 +123,9 @@ class _RankRun:
     def _write_points_of_journals(
         self, requested_count: int, contributions: list[ReportOfRank]
     ) -> PendingSweepWideVariables:
-        """Writes the points of all journals into the file; returns whether variables that depend on all
-        points are still missing, with their work items. requested_count: number of points to be solved in
-        this run."""
+        """Writes the points of all journals into the file; returns whether the variables that depend on all
+        points are missing, and their work items. requested_count: number of points to be solved in this run.
+        contributions: report of every rank."""
         self.seconds = time.monotonic() - self.clock_at_start
         if requested_count:
             history = run_history(contributions, self.ranks.MPI.Get_library_version())
@@ -137,14 +137,15 @@ class _RankRun:
             return PendingSweepWideVariables(True)
         if not requested_count:
             self._record_blas_kernels()
-        return PendingSweepWideVariables(True, self.sweep_wide.solver.work_items(read_view(self.output), {}))
+        items = self.sweep_wide.solver.work_items(read_view(self.output), {})
+        return PendingSweepWideVariables(True, items)
 
     def _print_message(self, text: str, is_problem: bool = False) -> None:
         """Prints a text; in quiet mode only if it reports a problem (`is_problem`)."""
         if is_problem or not self.request.quiet:
             click.echo(text)
 
-    def _open_result_file(self) -> list[IndexRange]:
+    def _open_file_and_find_missing_points(self) -> list[IndexRange]:
         """Opens or creates the result file; returns the ranges of the flat indices of missing points."""
         self.result_file_writer = ResultFileWriter(
             self.output, self.plan, self.request.fresh, self.request.extend
@@ -165,13 +166,13 @@ class _RankRun:
         attributes = self.result_file_writer.attributes()
         stored = provenance.blas_kernels_in(attributes)
         kernels = provenance.merged_blas_kernels(stored, self.kernels.splitlines())
-        if kernels != attributes.get(provenance.KERNELS_ATTRIBUTE):
-            self.result_file_writer.add_journals({provenance.KERNELS_ATTRIBUTE: kernels})
-        if sentence := provenance.several_kernels_warning(kernels):
+        if kernels != attributes.get(provenance.BLAS_KERNELS_ATTRIBUTE):
+            self.result_file_writer.add_journals({provenance.BLAS_KERNELS_ATTRIBUTE: kernels})
+        if sentence := provenance.several_blas_kernels_warning(kernels):
             click.echo(f"{self.output}: {sentence}")
 
     def _write_variables_and_check_missing(self, pending: PendingSweepWideVariables) -> bool:
-        """Writes the variables that depend on all points into the file; returns whether these are still
+        """Writes the variables that depend on all points into the file; returns whether they are still
         missing."""
         if not pending.is_missing:
             return False
@@ -180,7 +181,7 @@ class _RankRun:
             self.result_file_writer.add_journals({"stopped": self.stop.name})
             return True
         attributes = {"finished": provenance.utc_time(), "stopped": self.stop.name}
-        reasons = changed_point_failure_reasons(result, self.solver.statuses, self.job.point_text)
+        reasons = changed_point_failure_reasons(result, self.solver.possible_statuses, self.job.point_text)
         self.result_file_writer.finish(
             attributes, FinalAdditions(result.sweep_wide_variables, result.changed_points, reasons)
         )
@@ -201,7 +202,7 @@ class _RankRun:
             )
 
     def _status_counts_text(self, counts: Mapping[str, int], unsolved: int) -> str:
-        """Number of points of each status as text. counts: by status. unsolved: points left in this run."""
+        """Text with the number of points of each status, `counts`. unsolved: number of unsolved points."""
         missing_texts = {"missing": "of other shards"} if self.shard and not unsolved else {}
         return ", ".join(f"{count} {missing_texts.get(name, name)}" for name, count in counts.items())
 
@@ -214,14 +215,14 @@ class _RankRun:
         exceptions: int,
     ) -> int:
         """Completes the result file, prints how the run ended, and returns the exit status. pending, solved:
-        as from `solve_all`. exceptions: number of unforeseen exceptions on all ranks."""
+        results of `solve_all`. exceptions: number of unforeseen exceptions on all ranks."""
         lacks_sweep_wide_variables = self._write_variables_and_check_missing(pending)
-        sweep_wide = self.sweep_wide
+        result_count = len(self.sweep_wide.results) if self.sweep_wide else None
         missing_points = self.result_file_writer.missing_ranges()
         self._print_result_file_notes()
         counts = self.result_file_writer.status_counts()
         self.result_file_writer.close()
-        unsolved_count = self.shard_solver.items_to_solve(missing_points)[1]
+        unsolved_count = self.shard_solver.items_to_solve_and_point_count(missing_points)[1]
         text = f"shard {self.shard} of {self.output}" if missing_points else f"{self.output}"
         run_end = RunStatistics(
             ranks=self.ranks.size,
@@ -231,12 +232,12 @@ class _RankRun:
             seconds=self.seconds,
             sweep_wide_seconds=time.monotonic() - self.clock_at_start - self.seconds,
             interrupted_points=sum(contribution.statistics.was_interrupted for contribution in contributions),
-            solved_items=solved if pending.is_missing and sweep_wide else None,
-            items_for_next_run=len(sweep_wide.results) if sweep_wide and lacks_sweep_wide_variables else None,
+            solved_items=solved if pending.is_missing and self.sweep_wide else None,
+            result_count_for_next_run=result_count if lacks_sweep_wide_variables else None,
         )
         for sentence in run_end.time_sentences() or [f"{text} is complete, nothing to do"]:
             self._print_message(sentence)
-        expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
+        expected = {status.name for status in self.solver.possible_statuses if status.succeeded} | {"missing"}
         is_problem = not set(counts) <= expected
         self._print_message(f"{self.output}: {self._status_counts_text(counts, unsolved_count)}", is_problem)
         self._print_failures(contributions, exceptions)

@@ -49,7 +49,7 @@ class ShardSolver:
     point_text: Callable[[int], str]
     """Function from the flat index of a point to a text with the point's parameters."""
 
-    def items_to_solve(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
+    def items_to_solve_and_point_count(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
         """Returns (ranges of the numbers of this shard's work items with missing points, number of missing
         points in these work items).
 
@@ -77,8 +77,9 @@ class ShardSolver:
     ) -> ReportOfRank:
         """Solves work items together with all other ranks; writes this rank's results into its journal.
 
-        items, missing_count: returned by `items_to_solve`. prepare: function called before the first solve.
-        Raises EnvironmentIncomplete if a journal cannot be written.
+        items, missing_count: results of `items_to_solve_and_point_count`. missing: argument of that method.
+        prepare: function called before the first solve. Raises EnvironmentIncomplete if a journal cannot be
+        written.
         """
         reasons = FailureReasons(self.point_text)
         solver = self.solver
@@ -96,7 +97,7 @@ class ShardSolver:
         directory = journal_directory(self.output)
         try:
             with closing(Journal(directory, self.ranks.rank, plan.layout, plan.fingerprint)) as journal:
-                solve = self._solve_item(IndexSet(missing), directory)
+                solve = self._item_solver(IndexSet(missing), directory)
                 loop = SweepCallbacks(solve=solve, store=keep, prepare=prepare, item_label=self._item_name)
                 queue = ChunkQueue(items, self.ranks.size)
                 contribution = sweep(self.ranks, queue, loop, reporter, self.stop)
@@ -110,10 +111,11 @@ class ShardSolver:
         failures = list(reasons.example_by_reason.values())
         return ReportOfRank(host=socket.gethostname(), failures=failures, statistics=contribution)
 
-    def _solve_item(
+    def _item_solver(
         self, missing: IndexSet, directory: Path
     ) -> Callable[[int], Iterable[tuple[PointIndexOrIndices, Any]]]:
-        """Function from the number of a work item (a point, a chain or a group) to its results."""
+        """Function from the number of a work item (a point, a chain or a group) to its results. missing: flat
+        indices of the missing points. directory: folder of the checkpoints of chains."""
         solver = self.solver
         if solver.groups_and_group_solver:
             return GroupSolver(*solver.groups_and_group_solver, solver.solve, missing)

@@ -16,7 +16,7 @@ from ...sweep.loop import PointIndexOrIndices, RankStatistics, SweepCallbacks, s
 from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.ranks import Ranks
 from ...sweep.stop import SingleRankCommunication, SolverReportListener, StopRequest
-from ...tasks.protocol import NamedArrays, SweepWideResult, SweepWideSolver, WorkItems
+from ...tasks.protocol import NamedArrays, SweepWideResult, SweepWideVariableSolver, WorkItems
 from ...tasks.running.unforeseen_exceptions import RUN_ENDING_EXCEPTIONS, SweepWideExceptionCallback
 
 
@@ -37,14 +37,15 @@ class SweepWideComputation:
     def __init__(
         self,
         ranks: Ranks,
-        solver: SweepWideSolver,
+        solver: SweepWideVariableSolver,
         output: Path,
         fingerprint: str,
         note: SweepWideExceptionCallback,
         stop: StopRequest,
     ):
-        """solver: computes the variables. note: function called with every unforeseen exception; the result
-        of the work item is then empty."""
+        """solver: computes the variables. output: result file. fingerprint: fingerprint of the plan of this
+        file. note: function called with every unforeseen exception; the result of the work item is then
+        empty."""
         self.ranks = ranks
         self.solver = solver
         self.output = output
@@ -58,9 +59,9 @@ class SweepWideComputation:
         self, pending: PendingSweepWideVariables, prepare: Callable[[], object], title: str | None
     ) -> tuple[PendingSweepWideVariables, dict[str, int]]:
         """Solves the work items of `pending`, and all that follow from their results, on all ranks, until
-        none is left or the run is stopped. Returns (`pending` with the last work items, counts). counts: on
-        the first rank, number of items that all ranks solved in this run, by `WorkItems.done_item_phrase`;
-        else 0. Other arguments as in `solve`."""
+        none is left or the run is stopped. Returns (`pending` with the last work items, counts). counts:
+        numbers of items that all ranks solved in this run, by `WorkItems.done_item_phrase`; the numbers are 0
+        on all ranks but the first. Other arguments: as in `solve`."""
         solved_counts: dict[str, int] = {}
         items = pending.work_items
         while items is not None:
@@ -68,12 +69,13 @@ class SweepWideComputation:
             contributions = self.ranks.gather(self.solve(items, prepare, title)) or []
             count = sum(contribution.solved_point_count for contribution in contributions)
             solved_counts[items.done_item_phrase] = solved_counts.get(items.done_item_phrase, 0) + count
-            items = self.ranks.call_on_first_rank(partial(self._next_items, items))
+            items = self.ranks.call_on_first_rank(partial(self._items_of_next_stage, items))
         return pending, solved_counts
 
     def solve(self, items: WorkItems, prepare: Callable[[], object], title: str | None) -> RankStatistics:
         """Solves all work items of `items` that are still missing, on all ranks; returns the work of this
-        rank. title: text of the progress display; None for no display."""
+        rank. prepare: function called before the first solve. title: text of the progress display; None for
+        no display."""
         results: dict[int, NamedArrays] = {}
 
         def keep(item: PointIndexOrIndices, result: NamedArrays) -> None:
@@ -103,11 +105,11 @@ class SweepWideComputation:
             reporter.close()
 
     def _exchange_starts(self, items: WorkItems) -> None:
-        """Sends the special points at which missing half curves start to all ranks, so that no rank solves
-        these points again."""
+        """Sends all ranks the special points at which missing half curves start, so that no rank solves these
+        points again."""
         item_numbers = self.ranks.call_on_first_rank(lambda: items.items_to_solve(self.results))
-        for starts in self.ranks.gather_on_all_ranks(self.solver.cached_starts(items, item_numbers)):
-            self.solver.add_starts(starts)
+        for starts in self.ranks.gather_on_all_ranks(self.solver.cached_branch_starts(items, item_numbers)):
+            self.solver.cache_starts(starts)
 
     def _solve_item(self, items: WorkItems, item: int) -> Iterable[tuple[int, NamedArrays]]:
         try:
@@ -119,7 +121,7 @@ class SweepWideComputation:
             self.note(items.item_label(item), error)
             yield item, self.solver.empty_result(items)
 
-    def _next_items(self, items: WorkItems) -> WorkItems | None:
+    def _items_of_next_stage(self, items: WorkItems) -> WorkItems | None:
         """The work items of the stage after the stage of `items`; None if some of `items` are not solved, or
         if no item is left. Called on the first rank."""
         if items.items_to_solve(self.results):

@@ -38,6 +38,7 @@ def grid_axis_names(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ..
     """Names of the axes of a grid over an arm's quantities; empty if the points form a grid of parameters.
 
     sizes: number of values of each given quantity, and of each parameter that replaces the arm's value.
+    in_diagram: whether the grid is a phase diagram, in which several drags make an axis of gamma3.
     """
     names = (name for name in (*NON_LOAD_KEYS, *LOAD_KEYS) if name in sizes)
     quantities = [name for name in names if sizes[name] > 1 or name in LOAD_NAME_BY_RELATIVE_LOAD]

@@ -102,8 +102,9 @@ def drag_axis(value: Any) -> Axis:
     )
 
 
-def drag_names_of_indices(indices: list[float]) -> list[str]:
-    """Names of the drag estimates with the `indices` in DRAG_ESTIMATE_NAMES, which are whole numbers."""
+def drag_estimate_names_of_indices(indices: list[float]) -> list[str]:
+    """Names of the drag estimates with the given `indices` in DRAG_ESTIMATE_NAMES; all indices are whole
+    numbers."""
     return [DRAG_ESTIMATE_NAMES[int(index)] for index in indices]
 
 
@@ -117,14 +118,14 @@ def typed_unit(name: str, axis: Axis) -> str:
 def quantities_as_typed(quantities: Mapping[str, Axis]) -> str:
     """Text with names, values and typed units of an arm's quantities, like "length 10 cm, radius 5 mm".
 
-    A remark at the end names the quantities that were given without a unit; 0 needs none.
+    A remark at the end names the quantities that were given without a unit; the value 0 needs no unit.
     """
     typed = []
     unitless = []
     for name, axis in quantities.items():
         end_values = list_of(axis.array()[[0, -1]])
         if name == "drag":
-            drag_list = drag_names_of_indices(list_of(axis.array()))
+            drag_list = drag_estimate_names_of_indices(list_of(axis.array()))
             has_all = len(drag_list) == len(DRAG_ESTIMATE_NAMES)
             typed.append(f"drag {ALL_DRAG_ESTIMATES_NAME if has_all else ' and '.join(drag_list)}")
             continue

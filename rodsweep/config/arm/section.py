@@ -16,7 +16,7 @@ from ...model.arm.quantities import (
     GIVEN_QUANTITIES,
     LOAD_NAME_BY_RELATIVE_LOAD,
     LOAD_NAMES,
-    LOAD_SCALE_NAMES,
+    LOAD_SCALE_NAME_BY_LOAD,
     UNITS_AND_EXAMPLES,
 )
 from ...model.material.rod_material import RodMaterial
@@ -25,7 +25,7 @@ from ..axis import Axis, ParameterAxis
 from ..material import LawName, SectionName
 from ..values import StrictConfigSection
 from .axes import LOAD_KEYS, NON_LOAD_KEYS, SINGLE_PARAMETER_OF
-from .quantities import DragAxis, QuantityAxis, drag_names_of_indices, with_load_over_flutter
+from .quantities import DragAxis, QuantityAxis, drag_estimate_names_of_indices, with_load_over_flutter
 from .shape import (
     ALLOWED_SEGMENTS_TEXT,
     MATERIAL_KEYS,
@@ -115,7 +115,7 @@ class ArmConfig(StrictConfigSection):
         return material_of(self)
 
     @property
-    def given_material_keys(self) -> dict[str, Any]:
+    def given_material_values(self) -> dict[str, Any]:
         """Values of the given keys among segments, law and section, by key."""
         return {name: getattr(self, name) for name in MATERIAL_KEYS if getattr(self, name) is not None}
 
@@ -150,12 +150,12 @@ class ArmConfig(StrictConfigSection):
     @property
     def settings_of_results(self) -> dict[str, Any]:
         """Data of the arm on which the results depend, except the points: quantities in SI units and material
-        keys, by name; None for a quantity that varies between points."""
+        keys, by name; None for a quantity whose values belong to the points."""
         grid_names = SINGLE_PARAMETER_OF if self.is_parameter_grid else self.varying_quantities
-        si_values = {name: None if name in grid_names else value for name, value in self.first_values.items()}
+        si_values = self.first_si_values | {name: None for name in self.first_si_values if name in grid_names}
         load_kind = {} if self.load_kind is None else {"load_kind": self.load_kind}
         segments = {} if self.segments is None else {"segments": list(self.segments)}
-        return si_values | self.given_material_keys | segments | load_kind
+        return si_values | self.given_material_values | segments | load_kind
 
     @property
     def is_parameter_grid(self) -> bool:
@@ -182,7 +182,7 @@ class ArmConfig(StrictConfigSection):
                 hint = "; leave it out for a solid arm" if is_solid else ""
                 raise ValueError(f"parameters.arm.{name} = {value_text} is not above 0{hint}")
         if self.is_parameter_grid:
-            self.arm_of(self.first_values, with_load=True)
+            self.arm_of(self.first_si_values, with_load=True)
 
     def dimensionless_axes(self) -> dict[str, Axis]:
         """Axes of the dimensionless parameters of a grid of parameters, by name; without F if the arm has no
@@ -190,28 +190,28 @@ class ArmConfig(StrictConfigSection):
 
         Raises ValueError if the arm is not slender, or if the smallest load crushes the arm.
         """
-        arm = self.arm_of(self.first_values, with_load=True)
+        arm = self.arm_of(self.first_si_values, with_load=True)
         names = (*parameter_names_except("F", NONLINEAR_ROD_PARAMETER_NAMES), *self.cone_parameter_names)
         axes = {name: Axis(values=(arm.parameter(name),)) for name in names}
         for name in ("k2", "gamma3"):
             distinct = {getattr(self.arm_of(values), name) for values in self.values_of_arms()}
             axes[name] = Axis(values=tuple(sorted(distinct)))
         if self.load_name:
-            load_scale = getattr(arm, LOAD_SCALE_NAMES[self.load_name])
+            load_scale = getattr(arm, LOAD_SCALE_NAME_BY_LOAD[self.load_name])
             axes = {"F": self.quantity_axes[self.load_name].scaled(1 / load_scale)} | axes
         return axes
 
-    def grid_quantities(self) -> dict[str, Array]:
+    def quantity_values_on_grid(self) -> dict[str, Array]:
         """Values of the arm's quantities and units by name: a number, (), or the values, (n,), along the axis
         of the parameter that the quantity determines."""
         values = {name: axis.array() for name, axis in self.quantity_axes.items()}
         if self.poisson is not None:  # k2 decreases with Poisson's ratio, and axes must increase
             values["poisson"] = values["poisson"][::-1]
-        arm = self.arm_of(self.first_values)
+        arm = self.arm_of(self.first_si_values)
         units = {name: np.array([getattr(arm, name)]) for name in ARM_SCALES}
         if len(values.get("drag", ())) > 1:
-            first_values = self.first_values
-            arms = {drag: self.arm_of(first_values | {"drag": drag}) for drag in list_of(values["drag"])}
+            drags = list_of(values["drag"])
+            arms = {drag: self.arm_of(self.first_si_values | {"drag": drag}) for drag in drags}
             values["drag"] = np.array(sorted(arms, key=lambda drag: arms[drag].gamma3))
             units["tau2"] = np.array([arms[drag].tau2 for drag in list_of(values["drag"])])
         return {name: array[0] if len(array) == 1 else array for name, array in (values | units).items()}
@@ -222,7 +222,7 @@ class ArmConfig(StrictConfigSection):
         return () if self.tip_radius is None else ("taper",)
 
     @property
-    def first_values(self) -> dict[str, float]:
+    def first_si_values(self) -> dict[str, float]:
         """First value of every given quantity, in SI units, by name."""
         return {name: float(axis.array()[0]) for name, axis in self.quantity_axes.items()}
 
@@ -241,9 +241,9 @@ class ArmConfig(StrictConfigSection):
         section: dict[str, Any] = {name: value for name, value in values.items() if name in NON_LOAD_KEYS}
         has_load = with_load and self.load_key in LOAD_NAMES
         section |= {str(self.load_key): values[str(self.load_key)]} if has_load else NO_LOAD
-        (drag,) = drag_names_of_indices([section.pop("drag", 0.0)])
+        (drag,) = drag_estimate_names_of_indices([section.pop("drag", 0.0)])
         try:
-            return SlenderArm(**section, **self.given_material_keys, drag=drag)
+            return SlenderArm(**section, **self.given_material_values, drag=drag)
         except InputError as error:
             if type(error) in STATUS_OF_ERROR:
                 raise ArmOutsideModel(error) from None

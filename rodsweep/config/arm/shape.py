@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 MATERIAL_KEYS = ("segments", "law", "section")
 """Keys of an arm that correspond to the config section `material` of a dimensionless rod."""
-SHAPE_KEYS = ("tip_radius", "segments")
+NONUNIFORM_ARM_KEYS = ("tip_radius", "segments")
 """Keys of an arm that varies along its length."""
 RUBBER_POISSON = 0.5
 """Poisson's ratio of incompressible rubber. A swelling section requires this ratio."""
@@ -67,7 +67,7 @@ def material_of(arm: "ArmConfig") -> RodMaterial:
         )
     except ValueError as error:
         raise ValueError(f"parameters.arm.{error}") from None
-    if all(getattr(arm, name) is None for name in SHAPE_KEYS):
+    if all(getattr(arm, name) is None for name in NONUNIFORM_ARM_KEYS):
         return uniform_material
     if arm.is_parameter_grid and len(set(materials_of(arm))) > 1:
         raise ValueError(
@@ -95,11 +95,11 @@ def tapers_of(arm: "ArmConfig") -> set[float]:
 
 def refuse_misused_shape(arm: "ArmConfig", given_parameters: dict[str, Any]) -> None:
     """Raises ValueError if an arm with segments has several lengths, or if `taper` is given for a cone or for
-    segments."""
+    segments. given_parameters: parameters in the config, by name."""
     if arm.segments is not None and "length" in arm.varying_quantities:
         problem = "parameters.arm.length has several values, but the segments fix the length"
         raise ValueError(f"{problem}; leave it out")
-    for name in SHAPE_KEYS:
+    for name in NONUNIFORM_ARM_KEYS:
         if getattr(arm, name) is not None and "taper" in given_parameters:
             raise ValueError(f"parameters.arm.{name} and parameters.taper are both given; give one of them")
 

@@ -24,7 +24,7 @@ MAX_TEXT_LENGTH = 1000
 """Maximum length of a key or value, in characters."""
 HDF5_SIGNATURE = b"\x89HDF"
 """First bytes of an HDF5 file, hence of a result file."""
-TABLE_ENDINGS = (".csv", ".tsv")
+TABLE_SUFFIXES = (".csv", ".tsv")
 """Suffixes of files with lists of points, and of the tables that `rodsweep export` writes."""
 MAX_KEY_DEPTH = 20
 """Maximum depth of nested lists and mappings in a config."""
@@ -32,8 +32,8 @@ MAX_KEY_DEPTH = 20
 
 @contextmanager
 def refusals_naming_file(path: Path) -> Iterator[None]:
-    """Names the config file `path` at the beginning of refusals raised within the context, of values that are
-    checked after the file was read."""
+    """Context that puts the name of the config file `path` before the message of every InputError, for values
+    that are checked only after the file was read."""
     try:
         yield
     except InputError as error:
@@ -53,7 +53,7 @@ def read_config_text(path: Path) -> str:
         raise InputError(f"{name} cannot be read: {error.strerror}") from error
     if data.startswith(HDF5_SIGNATURE):
         raise InputError(f"{name} is a result file, not a config; `rodsweep show` prints its content")
-    if path.suffix in TABLE_ENDINGS:
+    if path.suffix in TABLE_SUFFIXES:
         raise InputError(f"{name} is a table, not a config; name the table in a config, as parameters.points")
     if len(data) > MAX_CONFIG_BYTES:
         raise InputError(

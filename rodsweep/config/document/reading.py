@@ -15,7 +15,7 @@ from ruamel.yaml import YAML
 from ...errors import InputError, short_repr
 from ...model.parameters import OPTIONAL_PARAMETER_NAMES
 from ...wording import enumeration
-from ..arm.quantities import drag_names_of_indices
+from ..arm.quantities import drag_estimate_names_of_indices
 from ..arm.section import ArmConfig
 from ..axis import Axis, axis_from_resolved
 from ..base_config import Config
@@ -110,7 +110,8 @@ def _with_axis_objects(section: dict[str, Any]) -> dict[str, Any]:
 
 
 def _without_arm_axes(parameters: dict[str, Any], in_diagram: bool) -> dict[str, Any]:
-    """Keys and values of `parameters` without the axes that `resolved_config` added from the arm."""
+    """Keys and values of `parameters` without the axes that `resolved_config` added from the arm. in_diagram:
+    whether the task is a phase diagram."""
     arm = ArmConfig.model_validate(parameters["arm"])
     dimensionless = arm.dimensionless_axes() if in_diagram or arm.is_parameter_grid else {}
 
@@ -146,11 +147,14 @@ def config_yaml(config: Config) -> str:
 
 def _config_notation(axis: Any) -> Any:
     """An axis in the notation of a config file (a number, a list or a range); for an arm, a mapping of the
-    quantities to this notation. Other values are returned unchanged. axis: resolved."""
+    quantities to this notation. Other values are returned unchanged. axis: value of a key of a resolved
+    config."""
     if not isinstance(axis, dict):
         return axis
     if "length" in axis:
-        drag_entry = {"drag": drag_names_of_indices(axis["drag"]["values"])} if "drag" in axis else {}
+        drag_entry = (
+            {"drag": drag_estimate_names_of_indices(axis["drag"]["values"])} if "drag" in axis else {}
+        )
         return {name: _config_notation(value) for name, value in axis.items()} | drag_entry
     values = axis.get("values", axis)
     return values[0] if isinstance(values, list) and len(values) == 1 else values

@@ -59,7 +59,7 @@ def message_of_problem(config: type[Config], problem: Any) -> str:
 
 
 def unknown_key_hint(key: str, allowed: Sequence[str], start_kind: str = "known keys are") -> str:
-    """Hint for an unknown key: "did you mean ...?" with similar known keys, or a list of all known keys.
+    """Hint for an unknown key: "did you mean ...?" with similar keys, or a list of all known keys, `allowed`.
     start_kind: beginning of the list. For a diameter, the hint is to give the radius."""
     if radius := radius_name_of_diameter(key, allowed):
         return f"give {radius}, half of it"
@@ -69,12 +69,12 @@ def unknown_key_hint(key: str, allowed: Sequence[str], start_kind: str = "known 
 
 
 def similar_keys(key: str, allowed: Sequence[str]) -> list[str]:
-    """The known keys that are most similar to an unknown key, in the given order; empty if no key is similar,
-    or if more than MAX_SUGGESTIONS keys are equally similar.
+    """The known keys, from `allowed`, that are most similar to an unknown key, in the given order; empty if
+    no key is similar, or if more than MAX_SUGGESTIONS keys are equally similar.
 
-    A known key is similar if the unknown key differs only in capitals and underscores, is the beginning or a
-    substring of MIN_SUBSTRING_LENGTH or more letters of the known key, or has at most one typing error in
-    LETTERS_PER_TYPING_ERROR letters.
+    A known key is similar if the unknown key differs only in capitals and underscores, is the beginning of
+    the known key, is any part of the known key with at least MIN_SUBSTRING_LENGTH letters, or has at most one
+    typing error in LETTERS_PER_TYPING_ERROR letters.
     """
     plain_key = _without_case_and_underscores(key)
     counts = {name: _typing_error_count(plain_key, _without_case_and_underscores(name)) for name in allowed}
@@ -102,8 +102,8 @@ def _typing_error_count(key: str, name: str) -> float | None:
 
 
 def _edit_distance(first: str, second: str) -> int:
-    """Edit distance of the words `first` and `second`: number of inserted, deleted, changed and exchanged
-    neighbouring letters."""
+    """Edit distance of the words `first` and `second`: number of insertions, deletions and changes of a
+    letter, and of exchanges of neighbouring letters."""
     distance_rows = [list(range(len(second) + 1))]
     for first_length, letter in enumerate(first, 1):
         distance_row = [first_length]
@@ -125,7 +125,7 @@ def _edit_distance(first: str, second: str) -> int:
 
 
 def keys_in_other_sections(config: type[Config], location: Sequence[str]) -> list[str]:
-    """Full names, like "parameters.F", of the known keys in other sections whose name is the last name of
+    """Full names, like "parameters.F", of the known keys in other sections that have the last name in
     `location`."""
     task = str(get_args(config.model_fields["task"].annotation)[0])
     keys = []
@@ -137,7 +137,7 @@ def keys_in_other_sections(config: type[Config], location: Sequence[str]) -> lis
 
 def dotted_key(location: Sequence[str]) -> str:
     """Full name of a key, like "parameters.F.num", from the names of its sections and its own name; shortened
-    to MAX_KEY_LENGTH characters. location: these names."""
+    to MAX_KEY_LENGTH characters. location: names of the sections, then the key's own name."""
     return printable_name(".".join(location), MAX_KEY_LENGTH)
 
 

@@ -128,5 +128,5 @@ class BranchConfig(Config):
         self.refuse_solved_parameter(parameter, reason)
         if self.parameters.arm is not None:
             self.refuse_options_of_arm({"along": parameter})
-        self.parameters.require_points(self.parameter_names)
+        self.parameters.require_one_definition_of_points(self.parameter_names)
         return self

@@ -45,5 +45,5 @@ class CriticalityConfig(Config):
     @model_validator(mode="after")
     def _refuse_force(self) -> "CriticalityConfig":
         self.refuse_solved_parameter("F", f"finds F itself; remove it and set {self.task}.F_max")
-        self.parameters.require_points(self.parameter_names)
+        self.parameters.require_one_definition_of_points(self.parameter_names)
         return self

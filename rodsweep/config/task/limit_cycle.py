@@ -109,7 +109,7 @@ class LimitCycleConfig(Config):
 
     @model_validator(mode="after")
     def _refuse_unused_keys(self) -> "LimitCycleConfig":
-        self.parameters.require_points(self.parameter_names)
+        self.parameters.require_one_definition_of_points(self.parameter_names)
         self.refuse_options_without_effect()
         self._require_enough_periods()
         arm = self.parameters.arm

@@ -32,5 +32,5 @@ class ModesConfig(LinearConfig):
 
     @model_validator(mode="after")
     def _require_points(self) -> "ModesConfig":
-        self.parameters.require_points(self.parameter_names)
+        self.parameters.require_one_definition_of_points(self.parameter_names)
         return self

@@ -49,7 +49,7 @@ class PhaseDiagramOptions(StrictConfigSection):
     `criticality`."""
 
     @property
-    def bautin_parameter(self) -> tuple[str, Axis] | None:
+    def bautin_name_and_axis(self) -> tuple[str, Axis] | None:
         """Returns (name, values) of the third parameter, in `bautin_along`; None if `bautin_along` is not
         given."""
         axes = [(name, getattr(self.bautin_along, name, None)) for name in TRANSVERSE_PARAMETER_NAMES]
@@ -136,8 +136,8 @@ class PhaseDiagramConfig(LinearConfig):
             }
         if criticality_requested:
             settings["together"]["criticality"] = {"gamma1": self.gamma1}
-        if self.phase_diagram.bautin_parameter is not None:
-            name, axis = self.phase_diagram.bautin_parameter
+        if self.phase_diagram.bautin_name_and_axis is not None:
+            name, axis = self.phase_diagram.bautin_name_and_axis
             settings["together"]["bautin_along"] = {name: axis.array().tolist(), "log": axis.is_logarithmic}
         return settings
 
@@ -166,7 +166,7 @@ class PhaseDiagramConfig(LinearConfig):
                 "parameters.points is given but the task phase_diagram needs axes; remove it and give "
                 f"{allowed}"
             )
-        self.parameters.require_points(NON_OPTIONAL_LINEAR_PARAMETER_NAMES, or_points=False)
+        self.parameters.require_one_definition_of_points(NON_OPTIONAL_LINEAR_PARAMETER_NAMES, or_points=False)
         if self.parameters.arm_axes:
             allowed_names = (*SINGLE_PARAMETER_OF, "drag")
             varied = next(name for name in self.parameters.arm_axes if name not in allowed_names)
@@ -195,9 +195,9 @@ class PhaseDiagramConfig(LinearConfig):
 
     @model_validator(mode="after")
     def _require_single_third_value(self) -> "PhaseDiagramConfig":
-        if self.phase_diagram.bautin_parameter is None:
+        if self.phase_diagram.bautin_name_and_axis is None:
             return self
-        name, axis = self.phase_diagram.bautin_parameter
+        name, axis = self.phase_diagram.bautin_name_and_axis
         first_value, last_value = axis.array()[[0, -1]]
         given_axis = self.parameters.axes.get(name)
         given_values = np.array([PARAMETERS[name].default]) if given_axis is None else given_axis.array()
@@ -227,7 +227,7 @@ def _require_finite_values(name: str, values: Sequence[float]) -> None:
 
 
 def _axis_count_refusal(varied_names: Sequence[str]) -> str:
-    """Message that refuses a config unless two parameters have several values. varied_names: names of
+    """Message for a config in which not exactly two parameters have several values. varied_names: names of
     the parameters with several values."""
     axis_count_text = f"{len(varied_names)} {'axis' if len(varied_names) == 1 else 'axes'}"
     names_text = f" ({', '.join(varied_names)})" if varied_names else ""

@@ -78,7 +78,7 @@ class SpectrumConfig(LinearConfig):
 
     @model_validator(mode="after")
     def _refuse_unused_keys(self) -> "SpectrumConfig":
-        self.parameters.require_points(self.parameter_names)
+        self.parameters.require_one_definition_of_points(self.parameter_names)
         if "gamma1" in self.parameters.constant_parameters and not self.spectrum.longitudinal:
             raise ValueError(
                 "parameters.gamma1 is given but not used: the transverse spectrum does not depend on gamma1; "

@@ -18,11 +18,11 @@ from ...model.compiled.kernel_constants import KernelConstants
 from ..exponents import MACHINE_EPSILON
 from ..parameter_path import ParameterPath
 from .determinant import CoefficientSamples, coefficient_samples, elements_for
-from .elements.minor_rates import PADDED_LENGTH
+from .elements.minor_rates import PROPAGATOR_LENGTH
 from .elements.propagators import element_propagators
 from .elements.settings import ARM_ELEMENT_SETTINGS
 
-LINEAR_SPACING = math.inf
+LOG_SCALE_OF_LINEAR_SPACING = math.inf
 """Value of `ArmFamily.log_spacing_scale` for series in p itself, not in a logarithm of p."""
 
 
@@ -33,15 +33,15 @@ class ArmFamilySettings(KernelConstants):
     arm_counts: tuple[int, ...] = (12, 17, 24, 24, 34)
     """Number of arms in each trial. 12 suffice on 21 of 24 random paths from 0 to three times a load."""
     log_spacing_scales_over_interval: tuple[float, ...] = (
-        LINEAR_SPACING,
-        LINEAR_SPACING,
-        LINEAR_SPACING,
+        LOG_SCALE_OF_LINEAR_SPACING,
+        LOG_SCALE_OF_LINEAR_SPACING,
+        LOG_SCALE_OF_LINEAR_SPACING,
         0.05,
         0.05,
     )
-    """`ArmFamily.log_spacing_scale` over the length of the interval, for each trial. Logarithmic spacing
-    needs fewer arms near complex forces of the size of the stiffness, where the stretch of rubber has branch
-    points."""
+    """`ArmFamily.log_spacing_scale` divided by the length of the interval, for each trial. Logarithmic
+    spacing needs fewer arms near complex forces of the size of the stiffness, where the stretch of rubber has
+    branch points."""
     max_propagator_entries: int = 500_000
     """No family is made if the propagators of one arm have more entries: single arms are then faster."""
     max_chebyshev_tail: float = 1e-15
@@ -51,7 +51,7 @@ class ArmFamilySettings(KernelConstants):
     """The tolerance for series of the coefficients along the arms is `max_chebyshev_tail` times this
     factor."""
 
-    def trials(self) -> list[tuple[int, float]]:
+    def trial_counts_and_spacings(self) -> list[tuple[int, float]]:
         """Pairs from `arm_counts` and `log_spacing_scales_over_interval`, in the order of the trials."""
         return list(zip(self.arm_counts, self.log_spacing_scales_over_interval, strict=True))
 
@@ -62,18 +62,19 @@ ARM_FAMILY_SETTINGS = ArmFamilySettings()
 class ArmFamily(NamedTuple):
     """Propagators of all arms with p from `p_low` to `p_high`, for |w| <= W, as Chebyshev series in p.
 
-    largest_w: W. log_spacing_scale: the series are in log(1 + (p - low)/scale), or in p if scale is
-    `LINEAR_SPACING`. coefficients: Chebyshev coefficients, (nodes, elements, terms, PADDED_LENGTH).
-    reference_entry_sizes: sizes to which the interpolation errors of propagator entries are relative, at w =
-    0, and summed over the positive powers of w/W, (elements, 2, PADDED_LENGTH). A size is the largest modulus
-    on the interval, plus the last two Chebyshev coefficients in units of the rounding error.
+    largest_w: W. log_spacing_scale: the series are in log(1 + (p - p_low)/log_spacing_scale), or in p if it
+    is `LOG_SCALE_OF_LINEAR_SPACING`. chebyshev_coefficients: Chebyshev coefficients, (nodes, elements, terms,
+    PROPAGATOR_LENGTH). reference_entry_sizes: sizes to which the interpolation errors of propagator entries
+    are relative, at w = 0, and summed over the positive powers of w/W, (elements, 2, PROPAGATOR_LENGTH). A
+    size is the largest modulus on the interval, plus the moduli of the last two Chebyshev coefficients
+    divided by `MACHINE_EPSILON`.
     """
 
     p_low: float
     p_high: float
     log_spacing_scale: float
     largest_w: float
-    coefficients: Array
+    chebyshev_coefficients: Array
     reference_entry_sizes: Array
 
 
@@ -81,7 +82,7 @@ def interpolated_family(path: ParameterPath, low: float, high: float, W: float) 
     """The family of the arms of `path` with p from `low` to `high`, for |w| <= W; None if the arms are
     not smooth in p, or the propagators have too many entries. Raises ValueError at a p without a valid arm,
     and FloatingPointError if no elements resolve an arm."""
-    for node_count, spacing in ARM_FAMILY_SETTINGS.trials():
+    for node_count, spacing in ARM_FAMILY_SETTINGS.trial_counts_and_spacings():
         scale = spacing * (high - low)
         arms = [path.rod_at(value) for value in list_of(_interpolation_points(low, high, scale, node_count))]
         samples = coefficient_samples(arms)
@@ -89,7 +90,7 @@ def interpolated_family(path: ParameterPath, low: float, high: float, W: float) 
         if not _series_converges(samples):
             continue
         elements = elements_for(arms, samples, W)
-        entry_count = len(elements.lengths) * ARM_ELEMENT_SETTINGS.max_terms * PADDED_LENGTH
+        entry_count = len(elements.lengths) * ARM_ELEMENT_SETTINGS.max_terms * PROPAGATOR_LENGTH
         if entry_count > ARM_FAMILY_SETTINGS.max_propagator_entries:
             # Later trials have as many entries for each arm, so that none of them would be smaller.
             return None
@@ -108,10 +109,10 @@ def interpolated_family(path: ParameterPath, low: float, high: float, W: float) 
 
 
 def has_smooth_coefficients(path: ParameterPath, low: float, high: float) -> bool:
-    """Whether the arms' coefficients are smooth in p from `low` to `high`, as a family needs: a cheap test.
+    """Cheap test whether the arms' coefficients are smooth in p from `low` to `high`, as a family requires.
     Raises ValueError at a p without a valid arm."""
     # The last trial has the most arms: if the coefficients are smooth at all, it mostly says so at once.
-    for node_count, spacing in reversed(ARM_FAMILY_SETTINGS.trials()):
+    for node_count, spacing in reversed(ARM_FAMILY_SETTINGS.trial_counts_and_spacings()):
         p = _interpolation_points(low, high, spacing * (high - low), node_count)
         if _series_converges(coefficient_samples([path.rod_at(value) for value in list_of(p)])):
             return True
@@ -126,17 +127,18 @@ def _series_converges(samples: CoefficientSamples) -> bool:
 
 
 def _interpolation_points(low: float, high: float, scale: float, point_count: int) -> Array:
-    """Increasing values of p, low to high, of the interpolated arms, (point_count,); scale: see
-    `ArmFamily`."""
+    """Increasing values of p, low to high, of the interpolated arms, (point_count,). scale:
+    `ArmFamily.log_spacing_scale`."""
     t: Array = (chebyshev_points(point_count) + 1) / 2
-    if scale < LINEAR_SPACING:
+    if scale < LOG_SCALE_OF_LINEAR_SPACING:
         t = np.expm1(t * math.log1p((high - low) / scale)) * scale / (high - low)
     # Beyond the interval, by rounding, the model may have no arm.
     return np.minimum(low + (high - low) * t, high)
 
 
 def _has_small_coefficient_tail(values: Array, tolerance: float) -> bool:
-    """Whether the last Chebyshev coefficients of each values[:, i] are <= tolerance * max|values[:, i]|."""
+    """Whether, for every i, the moduli of the last two Chebyshev coefficients of values[:, i] are at most
+    tolerance * max|values[:, i]|."""
     other_dimensions = tuple(range(2, values.ndim))
     last_coefficients = np.tensordot(_chebyshev_coefficient_matrix(len(values))[-2:], values, 1)
     largest_values = np.abs(values).max(axis=(0, *other_dimensions))

@@ -40,7 +40,7 @@ class CompletenessSettings(KernelConstants):
     real_point_counts: tuple[int, ...] = (3, 6)
     """Numbers k of points x_j of successive trials. Fewer points can lie closer to the hull; more points
     suffice for a wider hull."""
-    max_real_points_over_largest_w: tuple[float, ...] = (1.5, 6.0)
+    max_real_point_over_largest_w: tuple[float, ...] = (1.5, 6.0)
     """Largest x_k divided by the largest known |w|, for each of `real_point_counts`. Most proofs with a
     larger x_k fail, because unknown and known eigenvalues then contribute almost equally."""
     min_real_point_over_line_distance: float = 0.35
@@ -67,23 +67,23 @@ class CompletenessSettings(KernelConstants):
 
     def proof_trials(self) -> list[tuple[int, float]]:
         """Pairs (k, largest x_k divided by the largest known |w|) of all trials, in order."""
-        return list(zip(self.real_point_counts, self.max_real_points_over_largest_w, strict=True))
+        return list(zip(self.real_point_counts, self.max_real_point_over_largest_w, strict=True))
 
 
 COMPLETENESS_SETTINGS = CompletenessSettings()
 
 
 class Remainder(NamedTuple):
-    """The sum R of phi over all unknown eigenvalues (see the module docstring). min_unknown_contribution:
-    lower bound of the contribution of an unknown eigenvalue right of the line to R."""
+    """The sum R of phi over all unknown eigenvalues (see the module), and its rounding error.
+    min_unknown_contribution: lower bound of the contribution of an unknown eigenvalue right of the line."""
 
-    R: float
+    phi_sum: float
     rounding_error: float
     min_unknown_contribution: float
 
 
 class CompletenessProof(NamedTuple):
-    """Outcome of `prove_complete`: whether all eigenvalues are proved to be known, evaluations of D."""
+    """Outcome of `prove_complete`: whether completeness is proved, and number of evaluations of D."""
 
     is_complete: bool
     evaluation_count: int
@@ -100,13 +100,13 @@ def prove_complete(
         return CompletenessProof(False, 0)
     # R must be real, so an eigenvalue without its conjugate is treated as unknown.
     paired = is_real_or_conjugate_known(known_w)
-    largest_w = float(np.abs(known_w).max())
     evaluation_count = 0
     for k, max_ratio in COMPLETENESS_SETTINGS.proof_trials():
         points = points_right_of_hull(line, hull.a, hull.c, k)
-        if _last_proof_point(points) <= max_ratio * largest_w:
+        if _last_proof_point(points) <= max_ratio * np.abs(known_w).max():
             propagators = determinant.propagators_for(points[-1])
-            remainder = remainder_of_sum(line, known_w[paired], errors[paired], hull, points, propagators)
+            known = known_w[paired], errors[paired]
+            remainder = sum_over_unknown_eigenvalues(line, *known, hull, points, propagators)
             evaluation_count += k
             if proves_completeness(remainder):
                 return CompletenessProof(True, evaluation_count)
@@ -134,8 +134,8 @@ def requirements_of_cheapest_proof(
 ) -> tuple[int, float]:
     """Returns (number of leading eigenvalues that the cheapest proof needs, largest |w| of this proof). line:
     Re w of the vertical line. known_w: approximate eigenvalues, (n,), leading first. The cheapest proof has
-    the smallest |w|, and therefore the fewest elements. The number is at least `mode_count`, or 0 if no proof
-    is possible."""
+    the smallest |w|, and therefore the fewest elements. The number is at least `mode_count`. If no proof is
+    possible, the result is (0, inf)."""
     cheapest = 0, math.inf
     # The leading eigenvalues are not the smallest, so |w| need not increase along the list.
     moduli = list_of(np.maximum.accumulate(np.abs(known_w)))
@@ -159,7 +159,7 @@ def proves_completeness(remainder: Remainder) -> bool:
     """Whether R excludes an unknown eigenvalue right of the line. False also if R is far below 0: some known
     eigenvalue is then not a root of D."""
     max_remainder = COMPLETENESS_SETTINGS.max_remainder_over_contribution * remainder.min_unknown_contribution
-    return remainder.R + remainder.rounding_error < max_remainder and -max_remainder < remainder.R
+    return remainder.phi_sum + remainder.rounding_error < max_remainder and -max_remainder < remainder.phi_sum
 
 
 @compiled
@@ -194,12 +194,12 @@ def _max_argument_sum(points: Array, a: float, c: float) -> float:
 
 
 @compiled
-def remainder_of_sum(
+def sum_over_unknown_eigenvalues(
     line: float, known: Complex, error: Array, hull: EigenvalueHull, points: Array, level: tuple[float, Array]
 ) -> Remainder:
-    """The sum R over the unknown eigenvalues. line: Re w. known, error: known eigenvalues, closed under
-    conjugation, and their errors, (n,) each. points: x_j, (k,). level: (W, propagators for |w| <= W), W at
-    least the last point."""
+    """The sum R over the unknown eigenvalues. line: Re w of the vertical line. known, error: known
+    eigenvalues, closed under conjugation, and their errors, (n,) each. points: x_j, (k,). level: (W,
+    propagators for |w| <= W), W at least the last point."""
     k = len(points)
     R = 0.0
     rounding = 0.0
@@ -228,7 +228,7 @@ def remainder_of_sum(
 
 @compiled
 def _min_contribution_right_of(line: float, points: Array, a: float, c: float) -> float:
-    """Lower bound of Re phi at real w, and of 2 Re phi at complex w, in the hull (a, c) right of the line."""
+    """Lower bound, in the hull (a, c) right of the line, of Re phi at real w and of 2 Re phi at complex w."""
     b = 1 - c
     rightmost = max(a * a / (4 * b), line)
     lower_bound = 1.0

@@ -16,7 +16,7 @@ from ...model.dispersion import sampled_arm
 from ...model.local_coefficients import local_coefficient_array
 from ...model.material.rod_material import LocalCoefficients
 from ...model.rod import Rod
-from ..value import DeterminantValue, eigenvalue_error_and_scales
+from ..value import DeterminantValue, root_error_w_scale_and_wave_number
 from .elements.edges import edges_with_coarse_elements_halved, element_edges, two_sum
 from .elements.propagators import element_propagators, gauss_method
 from .elements.settings import ARM_ELEMENT_SETTINGS
@@ -24,7 +24,7 @@ from .local_waves import ExponentSamples, exponent_samples, mean_wave_number_and
 from .value import determinant_from_propagators
 
 PropagatorsUpToW = tuple[float, Array]
-"""(W, propagators that are valid for |w| <= W, (elements, terms, PADDED_LENGTH))."""
+"""(W, propagators that are valid for |w| <= W, (elements, terms, PROPAGATOR_LENGTH))."""
 
 
 class ArmDeterminant:
@@ -46,13 +46,13 @@ class ArmDeterminant:
         )
 
     def value(self, w: complex) -> DeterminantValue:
-        """D and D' = dD/dw at w, times exp(-S)."""
+        """D and D' = dD/dw at w, times exp(-S), S = `log_scale` of the result."""
         W, polynomials = self.propagators_for(abs(w))
         return determinant_from_propagators(complex(w), W, polynomials)
 
     def value_on_finer_elements(self, w: complex, w_factor: float) -> DeterminantValue:
-        """D and D' at w times exp(-S), from elements made for w_factor * |w|, w_factor >= 1. The differences
-        between values for several factors show the rounding error of D."""
+        """`value` at w, from elements made for w_factor * |w|, w_factor >= 1. The differences between values
+        for several factors show the rounding error of D."""
         W, polynomials = self.propagators_for(
             w_factor * abs(w), ARM_ELEMENT_SETTINGS.max_reused_W_over_w_in_comparisons
         )
@@ -63,7 +63,8 @@ class ArmDeterminant:
         return mean_wave_number_and_w_scale(w, self.samples)[0]
 
     def w_scale(self, w: complex) -> float:
-        """Change of w over which an exponent of D, integrated along it, changes by about one, in 1/tau2."""
+        """Change of w, in 1/tau2, over which an exponent of D, integrated along the arm, changes by about
+        1."""
         return mean_wave_number_and_w_scale(w, self.samples)[1]
 
     @cached_property
@@ -77,9 +78,10 @@ class ArmDeterminant:
         return exponent_samples(float(self.rod.F), coefficients, (lengths * weights).ravel())
 
     def propagators_for(self, min_W: float, max_ratio: float | None = None) -> PropagatorsUpToW:
-        """Returns (W, propagators that are valid for |w| <= W, (elements, terms, PADDED_LENGTH)) with W >=
-        min_W. Existing propagators with the smallest such W are reused if W <= max_ratio * min_W; otherwise
-        new propagators are made. max_ratio: by default `ARM_ELEMENT_SETTINGS.max_reused_W_over_w`."""
+        """Returns (W, propagators that are valid for |w| <= W, (elements, terms, PROPAGATOR_LENGTH)) with W
+        >= min_W. Existing propagators with the smallest such W are reused if W <= max_ratio * min_W;
+        otherwise new propagators are made. max_ratio: by default
+        `ARM_ELEMENT_SETTINGS.max_reused_W_over_w`."""
         max_ratio = ARM_ELEMENT_SETTINGS.max_reused_W_over_w if max_ratio is None else max_ratio
         min_W = max(min_W, self._smallest_W)
         for known_set in self._known_propagators:
@@ -116,7 +118,7 @@ class ElementsOfArms(NamedTuple):
 
 def coefficient_samples(rods: list[Rod]) -> CoefficientSamples:
     """Samples of the arms `rods`, whose profiles have equal breaks."""
-    # Along the taper, coefficients are constant in a single arm only: the points of another arm serve all.
+    # On a path of tapers the arm without taper has few points: the points of any other arm serve all.
     points, weights, _ = sampled_arm(min(rods, key=lambda rod: rod.material.is_piecewise_constant(rod.taper)))
     coefficients = LocalCoefficients(*local_coefficient_array(rods, points))
     forces = np.array([[rod.F] for rod in rods])
@@ -161,7 +163,7 @@ def eigenfunction_wave_number(rod: Rod, w: complex) -> float:
     uniform or not of linear material the result is the mean along the arm of the local bounds, which is not a
     bound."""
     if rod.is_uniform_and_linear:
-        return eigenvalue_error_and_scales(w, rod.coefficients)[2]
+        return root_error_w_scale_and_wave_number(w, rod.coefficients)[2]
     return arm_determinant(rod).mean_wave_number_bound(w)
 
 

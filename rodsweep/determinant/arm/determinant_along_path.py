@@ -19,7 +19,7 @@ from ..roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
 from ..value import DETERMINANT_SETTINGS, DeterminantValue
 from .arm_family import ArmFamily
 from .determinant import ArmDeterminant, arm_determinant
-from .family_values import determinant_of_family_arm, eigenvalue_of_family_arm, propagators_at
+from .family_values import W_and_propagators_at, determinant_of_family_arm, eigenvalue_of_family_arm
 from .newton import refine_eigenvalue_and_error
 from .rounding import rounding_error_from_propagators
 from .value import determinant_from_propagators
@@ -34,8 +34,8 @@ class ArmDoubleEigenvalueSettings:
     """Settings for double eigenvalues of arms along a path, and for differences by the path variable."""
 
     max_difference_step_divisions: int = 20
-    """Maximum number of divisions of a difference step by `difference_step_divisor`, to 1e-12 of the first
-    step."""
+    """Maximum number of difference steps tried, each `difference_step_divisor` times shorter than the last;
+    the shortest step is 4e-12 of the first."""
     difference_step_divisor: float = 4.0
     """A difference step is divided by this number if a neighbour is not a valid arm."""
 
@@ -62,15 +62,15 @@ class _DoubleEigenvalueStep(NamedTuple):
 
     @property
     def errors(self) -> tuple[float, float]:
-        """Errors of x and p after the last step."""
+        """(error of x, error of p) after the last step."""
         return max(self.rounding_error_of_x, abs(self.change_of_x)), max(
             self.rounding_error_of_p, abs(self.change_of_p)
         )
 
     def is_converged(self, previous_x_step: float) -> bool:
         """Whether Newton's method has converged: the step in p is of the size of rounding errors, and the
-        step in x too, or more than half as long as `previous_x_step`, the |change of x| in the previous
-        step."""
+        step in x is either of this size too or more than half as long as the previous step in x,
+        `previous_x_step`."""
         converged = ROOT_NEWTON_SETTINGS.converged_step_in_rounding_errors
         return abs(self.change_of_p) <= converged * self.rounding_error_of_p and (
             abs(self.change_of_x) <= converged * self.rounding_error_of_x
@@ -90,7 +90,7 @@ class ArmAlongPath:
         """The determinant D of the arm at p."""
         return arm_determinant(self.path.rod_at(p))
 
-    def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
+    def eigenvalue_with_slope_and_error(self, guess: complex, p: float) -> tuple[complex, complex, float]:
         """Returns (w, dw/dp, absolute error of w) of the eigenvalue w near `guess`, for the arm at p: from
         the family that contains p if the result is accurate, else from the arm itself."""
         family = self.family_at(p)
@@ -106,9 +106,8 @@ class ArmAlongPath:
         return w, -self.derivative_by_p(w, p, value.log_scale) / value.D_w, error
 
     def derivative_by_p(self, w: complex, p: float, log_scale: float) -> complex:
-        """dD/dp exp(-S) at w and p, by a difference between neighbouring arms. log_scale: logarithm of the
-        scale."""
-        stencil, step = self._difference_stencil(p, math.inf)
+        """dD/dp exp(-S) at w and p, by a difference between neighbouring arms; S = `log_scale`."""
+        stencil, step = self._difference_stencil_and_step(p, math.inf)
         slope = 0j
         for offset, weight in stencil:
             neighbour = self.determinant(p + offset * step).value(w)
@@ -116,7 +115,7 @@ class ArmAlongPath:
         return slope / step
 
     def double_eigenvalue(self, x: float, p: float, expected_distance: float) -> LocatedEigenvalue:
-        """The double real eigenvalue D = D_w = 0 near the guess (x, p), by Newton's method.
+        """The double real eigenvalue, where D = D_w = 0, near the guess w = x at p, by Newton's method.
 
         expected_distance: expected distance of p from the guess. Returns `FAILED_EIGENVALUE` if p moves by
         more than twice `expected_distance` or to no valid arm, if the sign of x changes, if the Jacobian is
@@ -128,7 +127,7 @@ class ArmAlongPath:
         jacobian: _DoubleEigenvalueJacobian | None = None
         uses_families = True
         # Twice as many steps: Newton's method runs first with families, then with the arms themselves.
-        for _ in range(2 * ROOT_NEWTON_SETTINGS.max_steps):
+        for _ in range(2 * ROOT_NEWTON_SETTINGS.max_steps_to_crossing):
             family = self._usable_family(x, p) if uses_families else None
             # The last Jacobian of the families only affects how fast the arms' own steps converge.
             if uses_families or jacobian is None:
@@ -159,12 +158,12 @@ class ArmAlongPath:
         # Every value is brought to one scale S, since values with different scales cannot be subtracted.
         log_scale = self._determinant_value(x, p).log_scale
         h = DETERMINANT_SETTINGS.second_derivative_step_over_w * abs(x)
-        D_ww = (
-            self._real_determinant(x + h, p, log_scale)[1] - self._real_determinant(x - h, p, log_scale)[1]
-        ) / (2 * h)
-        stencil, k = self._difference_stencil(p, ROOT_NEWTON_SETTINGS.jacobian_step_ratio * expected_distance)
+        left, right = (self._real_D_and_slope(place, p, log_scale)[1] for place in (x - h, x + h))
+        D_ww = (right - left) / (2 * h)
+        max_step = ROOT_NEWTON_SETTINGS.relative_jacobian_difference_step * expected_distance
+        stencil, k = self._difference_stencil_and_step(p, max_step)
         samples = [
-            (weight, self._real_determinant(x, p + offset * k, log_scale)) for offset, weight in stencil
+            (weight, self._real_D_and_slope(x, p + offset * k, log_scale)) for offset, weight in stencil
         ]
         D_p, D_wp = (sum(weight * value[i] for weight, value in samples) / k for i in range(2))
         return _DoubleEigenvalueJacobian(log_scale, D_p, D_ww, D_wp)
@@ -172,10 +171,10 @@ class ArmAlongPath:
     def _newton_step(
         self, x: float, p: float, jacobian: _DoubleEigenvalueJacobian, family: ArmFamily | None
     ) -> _DoubleEigenvalueStep:
-        """One step of Newton's method for D = D_w = 0 from real w = x and p. D is computed from the `family`,
-        or from the arm at p itself without a family. The step is nan if the Jacobian is singular."""
+        """One step of Newton's method for D = D_w = 0 from real w = x and p. D is computed from `family` or,
+        if `family` is None, from the arm at p itself. The step is nan if the Jacobian is singular."""
         if family is not None:
-            W, polynomials = propagators_at(family, p)
+            W, polynomials = W_and_propagators_at(family, p)
         else:
             W, polynomials = self.determinant(p).propagators_for(abs(x))
         value = determinant_from_propagators(complex(x, 0.0), W, polynomials)
@@ -207,23 +206,25 @@ class ArmAlongPath:
             return determinant_of_family_arm(family, complex(x, 0.0), p)
         return self.determinant(p).value(complex(x, 0.0))
 
-    def _real_determinant(self, x: float, p: float, log_scale: float) -> tuple[float, float]:
-        """D exp(-S) and D_w exp(-S), real, at real w = x, for the arm at p."""
+    def _real_D_and_slope(self, x: float, p: float, log_scale: float) -> tuple[float, float]:
+        """Returns (D exp(-S), D_w exp(-S)), both real, at real w = x, for the arm at p; S = `log_scale`."""
         value = self._determinant_value(x, p)
         scale = math.exp(value.log_scale - log_scale)
         return value.D.real * scale, value.D_w.real * scale
 
-    def _difference_stencil(self, p: float, max_step: float) -> tuple[tuple[tuple[int, float], ...], float]:
+    def _difference_stencil_and_step(
+        self, p: float, max_step: float
+    ) -> tuple[tuple[tuple[int, float], ...], float]:
         """Returns (stencil, step) of a difference by p. stencil: pairs (offset in steps, weight times step).
         step: at most `max_step`.
 
-        The step is shortened, at most `max_difference_step_divisions` times, until all neighbouring arms are
-        valid: not crushed, no negative compliance or drag. The stencil is one-sided at p = 0, and where p is
-        so small that no shortened step keeps p - step positive, unless p is the force.
+        Shorter and shorter steps are tried, at most `max_difference_step_divisions`, until all neighbouring
+        arms are valid: not crushed, no negative compliance or drag. The stencil is one-sided if no tried step
+        has valid arms on both sides and, unless p is the force, at p = 0.
         """
-        first_step = min(ROOT_NEWTON_SETTINGS.jacobian_step_ratio * max(abs(p), 1.0), max_step)
+        first_step = min(ROOT_NEWTON_SETTINGS.relative_jacobian_difference_step * max(abs(p), 1.0), max_step)
         # p = 0 ends the range of compliances and drags, but not of the force, which has either sign.
-        if p == 0 and self.path.name != "F":
+        if p == 0 and self.path.parameter_name != "F":
             return SECOND_ORDER_FORWARD_STENCIL, first_step
         central_step = self._valid_step(p, first_step, SECOND_ORDER_CENTRAL_STENCIL)
         if central_step is not None:

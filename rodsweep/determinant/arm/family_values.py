@@ -12,7 +12,7 @@ from ...model.compiled.compilation import compiled, compiled_with_reordered_sums
 from ..exponents import EXPONENT_SETTINGS, MACHINE_EPSILON
 from ..roots.settings import ROOT_NEWTON_SETTINGS
 from ..value import DeterminantValue
-from .arm_family import LINEAR_SPACING, ArmFamily
+from .arm_family import LOG_SCALE_OF_LINEAR_SPACING, ArmFamily
 from .newton import ARM_ROOT_SETTINGS
 from .rounding import error_from_interpolated_propagators
 from .value import determinant_from_propagators, path_value_from_propagators
@@ -21,15 +21,15 @@ from .value import determinant_from_propagators, path_value_from_propagators
 @compiled
 def write_propagators(family: ArmFamily, p: float, polynomials: Array, p_derivatives: Array) -> None:
     """Writes the propagators of the arm at p into polynomials, and their derivatives by p into p_derivatives,
-    both (elements, terms, PADDED_LENGTH)."""
+    both (elements, terms, PROPAGATOR_LENGTH)."""
     half = (family.p_high - family.p_low) / 2
     t = (p - (family.p_low + family.p_high) / 2) / half
-    if family.log_spacing_scale < LINEAR_SPACING:
+    if family.log_spacing_scale < LOG_SCALE_OF_LINEAR_SPACING:
         log_width = math.log1p(2 * half / family.log_spacing_scale)
         t = 2 * math.log1p((p - family.p_low) / family.log_spacing_scale) / log_width - 1
         # dp/dt at this p turns derivatives by the Chebyshev variable t into derivatives by p.
         half = (p - family.p_low + family.log_spacing_scale) * log_width / 2
-    nodes = len(family.coefficients)
+    nodes = len(family.chebyshev_coefficients)
     T = np.empty(nodes)
     rates = np.empty(nodes)
     # T_0 and T_(-1), as T_(-1) = T_1
@@ -48,7 +48,7 @@ def write_propagators(family: ArmFamily, p: float, polynomials: Array, p_derivat
         else:
             rate, previous_rate = 2 * polynomial + 2 * t * rate - previous_rate, rate
             polynomial, previous_polynomial = 2 * t * polynomial - previous_polynomial, polynomial
-    series = family.coefficients.reshape(nodes, -1)
+    series = family.chebyshev_coefficients.reshape(nodes, -1)
     _sum_series(series, T, rates, polynomials.reshape(-1), p_derivatives.reshape(-1))
 
 
@@ -77,17 +77,19 @@ def _sum_series(series: Array, T: Array, rates: Array, values: Array, slopes: Ar
 
 
 @compiled
-def propagators_at(family: ArmFamily, p: float) -> tuple[float, Array]:
-    """Returns (W, propagators for |w| <= W, (elements, terms, PADDED_LENGTH)) of the arm at p of a family."""
-    polynomials = np.empty(family.coefficients.shape[1:])
+def W_and_propagators_at(family: ArmFamily, p: float) -> tuple[float, Array]:
+    """Returns (W, propagators for |w| <= W, (elements, terms, PROPAGATOR_LENGTH)) of the arm at p of a
+    family."""
+    polynomials = np.empty(family.chebyshev_coefficients.shape[1:])
     write_propagators(family, p, polynomials, np.empty_like(polynomials))
     return family.largest_w, polynomials
 
 
 @compiled
 def determinant_of_family_arm(family: ArmFamily, w: complex, p: float) -> DeterminantValue:
-    """D and dD/dw times exp(-S) of the arm at p of a family; |w| <= W."""
-    shape = family.coefficients.shape[1:]
+    """D and dD/dw, times exp(-S), at w for the arm at p of a family; |w| <= W. S: `log_scale` of the
+    result."""
+    shape = family.chebyshev_coefficients.shape[1:]
     polynomials = np.empty(shape)
     p_derivatives = np.empty(shape)
     write_propagators(family, p, polynomials, p_derivatives)
@@ -99,12 +101,12 @@ def eigenvalue_of_family_arm(family: ArmFamily, guess: complex, p: float) -> tup
     """Returns (w, dw/dp, error of w) of the eigenvalue near `guess`, for the arm at p of a family. Newton's
     method ends when rounding stops the decrease of the steps. A real guess gives a real w. The function is
     not for nearly double eigenvalues."""
-    polynomials = np.empty(family.coefficients.shape[1:])
+    polynomials = np.empty(family.chebyshev_coefficients.shape[1:])
     p_derivatives = np.empty_like(polynomials)
     write_propagators(family, p, polynomials, p_derivatives)
     w = guess
     previous_step = math.inf
-    for _ in range(ROOT_NEWTON_SETTINGS.max_refinements):
+    for _ in range(ROOT_NEWTON_SETTINGS.max_steps_to_eigenvalue):
         value = determinant_from_propagators(w, family.largest_w, polynomials)
         step = value.D / value.D_w if value.D_w != 0 else 0j
         # D is real at real w, so an imaginary part of the step could only be rounding.
@@ -124,4 +126,8 @@ def eigenvalue_of_family_arm(family: ArmFamily, guess: complex, p: float) -> tup
     if w.imag == 0:
         slope = complex(slope.real, 0.0)
     e = error_from_interpolated_propagators(w, W, polynomials, S, family.reference_entry_sizes)
-    return w, slope, (e + ARM_ROOT_SETTINGS.residual_factor * abs(D)) / size + MACHINE_EPSILON * abs(w)
+    return (
+        w,
+        slope,
+        (e + ARM_ROOT_SETTINGS.residual_factor_in_error_of_D * abs(D)) / size + MACHINE_EPSILON * abs(w),
+    )

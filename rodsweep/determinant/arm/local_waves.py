@@ -31,7 +31,7 @@ class ExponentSamples(NamedTuple):
 
 def exponent_samples(F: float | Array, coefficients: LocalCoefficients, weights: Array) -> ExponentSamples:
     """Samples of an arm from the force F, its coefficients at points, (points,), and weights, (points,). For
-    n arms, F is (n, 1), each coefficient (n, points), and squares get the shape (4, n, points)."""
+    n arms, F is (n, 1), each coefficient (n, points), and `squared_exponent_coefficients` (4, n, points)."""
     nu, c2, c3, gamma2, gamma3, g = coefficients
     shear = c2 * gamma2
     rotation = c3 * gamma3
@@ -57,9 +57,9 @@ def modulus_of_parts(real: float, imag: float) -> float:
 
 @compiled_with_reordered_sums
 def mean_wave_number_and_w_scale(w: complex, samples: ExponentSamples) -> tuple[float, float]:
-    """Returns (wave number, scale of w) at w. wave number: (|sqrt z+| + |sqrt z-|)/2, a bound of |q|,
-    averaged along the arm. scale of w: change of w over which an exponent of D changes by about one,
-    1/(average along the arm of the larger |d sqrt(z+-)/dw|)."""
+    """Returns (wave number, scale of w) at w. wave number: mean along the arm of (|sqrt z+| + |sqrt z-|)/2,
+    the local bound of |q| in exp(+-q u). scale of w: change of w over which an exponent of D changes by about
+    one, 1/(average along the arm of the larger |d sqrt(z+-)/dw|)."""
     wave_number = 0.0
     rate_sum = 0.0
     a = w.real

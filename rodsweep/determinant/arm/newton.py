@@ -26,7 +26,7 @@ from .value import determinant_from_propagators
 class ArmRootSettings(KernelConstants):
     """Settings for the refinement of eigenvalues of arms."""
 
-    residual_factor: float = 2.0
+    residual_factor_in_error_of_D: float = 2.0
     """Factor of |D|, the residual after Newton's method, in the error of D at a root."""
     max_remainder_for_restart_at_zero: float = 1e-8
     """If a Newton step leaves at most this fraction of |w|, the next step starts from w = 0: the remainder
@@ -53,7 +53,7 @@ def _second_derivative_by_propagators(w: complex, S: float, level: PropagatorsUp
 def _root_error_from_value(w: complex, value: DeterminantValue, level: PropagatorsUpToW) -> float:
     """`root_error` at w, from the value of D at w and the propagators of `level`."""
     rounding = rounding_error_from_propagators(w, level[0], level[1], value.log_scale)
-    e = ARM_ROOT_SETTINGS.residual_factor * abs(value.D) + rounding
+    e = ARM_ROOT_SETTINGS.residual_factor_in_error_of_D * abs(value.D) + rounding
     size = abs(value.D_w)
     error = e / max(size, EXPONENT_SETTINGS.min_divisor)
     if error > ROOT_SETTINGS.min_double_root_correction_over_w * abs(w):
@@ -81,7 +81,7 @@ def _newton_from_guess(guess: complex, level: PropagatorsUpToW, last: float) -> 
     propagators.
     """
     w = guess
-    for _ in range(ROOT_NEWTON_SETTINGS.max_refinements):
+    for _ in range(ROOT_NEWTON_SETTINGS.max_steps_to_eigenvalue):
         value = determinant_from_propagators(w, level[0], level[1])
         # An infinite step ends the iteration where it is.
         step = value.D / value.D_w if value.D_w != 0 else complex(math.inf, 0.0)
@@ -135,19 +135,21 @@ def _parabola_roots_by_propagators(middle: complex, level: PropagatorsUpToW) -> 
     return roots_of_parabola(middle, D, D_w, _second_derivative_by_propagators(middle, S, level))
 
 
-def _propagators_up_to(w: complex, determinant: ArmDeterminant) -> PropagatorsUpToW:
+def _propagators_for_second_derivative(w: complex, determinant: ArmDeterminant) -> PropagatorsUpToW:
     """Returns (W, propagators) that are valid for D and D'' at w."""
     return determinant.propagators_for((1 + DETERMINANT_SETTINGS.second_derivative_step_over_w) * abs(w))
 
 
 def second_derivative(w: complex, log_scale: float, determinant: ArmDeterminant) -> complex:
-    """D'' exp(-S) of an arm at w, by a central difference of D'; real for real w."""
-    return _second_derivative_by_propagators(complex(w), log_scale, _propagators_up_to(w, determinant))
+    """D'' exp(-S) of an arm at w, by a central difference of D'; real for real w. S: `log_scale`."""
+    return _second_derivative_by_propagators(
+        complex(w), log_scale, _propagators_for_second_derivative(w, determinant)
+    )
 
 
 def root_error(w: complex, determinant: ArmDeterminant) -> float:
     """Estimated distance from w to the nearest root of an arm's D, in 1/tau2; valid near double roots too."""
-    return _root_error_by_propagators(complex(w), _propagators_up_to(w, determinant))
+    return _root_error_by_propagators(complex(w), _propagators_for_second_derivative(w, determinant))
 
 
 def root_errors(w: Sequence[complex], determinant: ArmDeterminant) -> Array:
@@ -169,7 +171,9 @@ def refine_eigenvalue_and_error(
     last = 2 * max_first_step
     # The loop ends because the steps keep halving across the restarts with other elements.
     while error < 0:
-        w, error, last = _newton_from_guess(complex(w), _propagators_up_to(w, determinant), last)
+        w, error, last = _newton_from_guess(
+            complex(w), _propagators_for_second_derivative(w, determinant), last
+        )
     return w, error
 
 
@@ -190,15 +194,16 @@ def refine_eigenvalues_and_errors(
 
 
 def _common_propagators(w: Sequence[complex], determinant: ArmDeterminant) -> PropagatorsUpToW | None:
-    """The propagators that `_propagators_up_to` gives for every w; None if they differ or there is no w."""
+    """The propagators that `_propagators_for_second_derivative` gives for every w; None if they differ or
+    there is no w."""
     if not w:
         return None
     # The propagators for all other w lie between the propagators for the smallest and the largest |w|.
-    level = _propagators_up_to(max(w, key=abs), determinant)
-    return level if level is _propagators_up_to(min(w, key=abs), determinant) else None
+    level = _propagators_for_second_derivative(max(w, key=abs), determinant)
+    return level if level is _propagators_for_second_derivative(min(w, key=abs), determinant) else None
 
 
 def taylor_parabola_roots(middle: complex, determinant: ArmDeterminant) -> tuple[complex, complex]:
     """The two roots of the quadratic Taylor polynomial of an arm's D about `middle`. For a real `middle` the
     roots are both real or complex conjugates."""
-    return _parabola_roots_by_propagators(middle, _propagators_up_to(middle, determinant))
+    return _parabola_roots_by_propagators(middle, _propagators_for_second_derivative(middle, determinant))

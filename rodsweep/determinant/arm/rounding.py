@@ -30,7 +30,7 @@ from .elements.evaluation import (
     fill_real_propagator_value,
     powers_and_derivatives,
 )
-from .elements.minor_rates import PADDED_LENGTH, SM
+from .elements.minor_rates import PROPAGATOR_LENGTH, SM
 from .elements.modulus_sums import (
     modulus_sum_of_form,
     modulus_sum_of_form_at_real_w,
@@ -60,10 +60,10 @@ ARM_ROUNDING_SETTINGS = ArmRoundingSettings()
 @compiled
 def rounding_error_from_propagators(w: complex, W: float, polynomials: Array, S: float) -> float:
     """Bound of the rounding error of D exp(-S) at w, to first order. polynomials: propagators valid for |w|
-    <= W, (elements, terms, PADDED_LENGTH). S: logarithm of the scale of the result."""
+    <= W, (elements, terms, PROPAGATOR_LENGTH). S: logarithm of the scale of the result."""
     if w.imag == 0:
         return _rounding_error_from_real_propagators(w.real, W, polynomials, S)
-    return error_from_interpolated_propagators(w, W, polynomials, S, np.empty((0, 2, PADDED_LENGTH)))
+    return error_from_interpolated_propagators(w, W, polynomials, S, np.empty((0, 2, PROPAGATOR_LENGTH)))
 
 
 @compiled
@@ -71,7 +71,7 @@ def _rounding_error_from_real_propagators(w: float, W: float, polynomials: Array
     """`rounding_error_from_propagators` at real w, where all minors are real."""
     elements, terms, _ = polynomials.shape
     powers = powers_and_derivatives(complex(w / W, 0.0), terms)
-    C = np.empty((elements, PADDED_LENGTH))
+    C = np.empty((elements, PROPAGATOR_LENGTH))
     x = np.zeros((elements + 1, MINOR_COUNT))
     x[0, SM] = 1.0
     scale = np.zeros(elements + 1)
@@ -100,13 +100,13 @@ def error_from_interpolated_propagators(
 ) -> float:
     """Bound of the rounding and interpolation error of D exp(-S) at w, to first order.
 
-    polynomials: interpolated propagators valid for |w| <= W, (elements, terms, PADDED_LENGTH). S: logarithm
-    of the scale of the result. reference_entry_sizes: sizes to which the interpolation errors of propagator
-    entries are relative, (elements, 2, PADDED_LENGTH); no elements if nothing is interpolated.
+    polynomials: interpolated propagators valid for |w| <= W, (elements, terms, PROPAGATOR_LENGTH). S:
+    logarithm of the scale of the result. reference_entry_sizes: sizes to which the interpolation errors of
+    propagator entries are relative, (elements, 2, PROPAGATOR_LENGTH); no elements if nothing is interpolated.
     """
     elements, terms, _ = polynomials.shape
     powers = powers_and_derivatives(w / W, terms)
-    C = np.empty((elements, 2, PADDED_LENGTH))
+    C = np.empty((elements, 2, PROPAGATOR_LENGTH))
     x = np.zeros((elements + 1, 2, MINOR_COUNT))
     x[0, 0, SM] = 1.0
     scale = np.zeros(elements + 1)

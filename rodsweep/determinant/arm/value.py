@@ -28,7 +28,7 @@ from .elements.evaluation import (
     propagate_real_tangent,
     propagate_tangent,
 )
-from .elements.minor_rates import PADDED_LENGTH, SM
+from .elements.minor_rates import PROPAGATOR_LENGTH, SM
 from .elements.modulus_sums import minor_sm_modulus_sum, real_minor_sm_modulus_sum
 from .elements.settings import MINOR_COUNT
 
@@ -54,7 +54,7 @@ def _norm(x: Array) -> float:
 
 
 @compiled_with_reordered_sums
-def _real_norm(x: Array) -> float:
+def _norm_of_real_minors(x: Array) -> float:
     """Euclidean norm of the real minors x, (MINOR_COUNT,)."""
     total = 0.0
     for i in range(MINOR_COUNT):
@@ -82,7 +82,7 @@ def divide_by_norm(x: Array) -> float:
 @compiled
 def divide_real_by_norm(x: Array) -> float:
     """`divide_by_norm` for real minors x, (MINOR_COUNT,)."""
-    size = _real_norm(x)
+    size = _norm_of_real_minors(x)
     if not _needs_rescaling(size):
         return 0.0
     x /= size
@@ -95,12 +95,12 @@ def _multiply_propagators(
 ) -> tuple[complex, complex, complex, float]:
     """Returns (D, dD/dw, dD/dp, S) of `path_value_from_propagators` at w = z W; dD/dp is 0 if `p_derivatives`
     is empty. polynomials, p_derivatives: propagators and their derivatives by p, (elements, terms,
-    PADDED_LENGTH)."""
+    PROPAGATOR_LENGTH)."""
     elements, terms, _ = polynomials.shape
     has_p_derivative = len(p_derivatives) > 0
     powers = powers_and_derivatives(z, terms)
-    C = np.empty((4, PADDED_LENGTH))
-    C_p = np.empty((2, PADDED_LENGTH))
+    C = np.empty((4, PROPAGATOR_LENGTH))
+    C_p = np.empty((2, PROPAGATOR_LENGTH))
     # minors and their derivatives by w and p, here and at the end of the element
     minors = np.zeros((3, 2, MINOR_COUNT))
     next_minors = np.zeros((3, 2, MINOR_COUNT))
@@ -134,8 +134,8 @@ def _multiply_real_propagators(
     elements, terms, _ = polynomials.shape
     has_p_derivative = len(p_derivatives) > 0
     powers = powers_and_derivatives(complex(z, 0.0), terms)
-    C = np.empty((2, PADDED_LENGTH))
-    C_p = np.empty(PADDED_LENGTH)
+    C = np.empty((2, PROPAGATOR_LENGTH))
+    C_p = np.empty(PROPAGATOR_LENGTH)
     minors = np.zeros((3, MINOR_COUNT))
     next_minors = np.zeros((3, MINOR_COUNT))
     minors[0, SM] = 1.0
@@ -147,7 +147,7 @@ def _multiply_real_propagators(
         if has_p_derivative:
             fill_real_propagator_value(p_derivatives[e], powers, C_p)
             propagate_real_tangent(C[0], minors[2], C_p, minors[0], next_minors[2])
-        size = _real_norm(next_minors[0])
+        size = _norm_of_real_minors(next_minors[0])
         if e == elements - 1:
             size = max(size, real_minor_sm_modulus_sum(C[0], minors[0]))
         if _needs_rescaling(size) or e == elements - 1:
@@ -160,9 +160,9 @@ def _multiply_real_propagators(
 @compiled
 def scaled_determinant_from_propagators(w: complex, W: float, polynomials: Array) -> tuple[complex, float]:
     """Returns (D exp(-S), S) at w, without derivatives. polynomials: propagators for |w| <= W, (elements,
-    terms, PADDED_LENGTH)."""
+    terms, PROPAGATOR_LENGTH)."""
     powers = powers_and_derivatives(w / W, polynomials.shape[1])
-    C = np.empty((2, PADDED_LENGTH))
+    C = np.empty((2, PROPAGATOR_LENGTH))
     minors = np.zeros((2, MINOR_COUNT))
     next_minors = np.empty((2, MINOR_COUNT))
     minors[0, SM] = 1.0
@@ -178,7 +178,7 @@ def scaled_determinant_from_propagators(w: complex, W: float, polynomials: Array
 @compiled
 def log_modulus_from_propagators(w: complex, W: float, polynomials: Array) -> float:
     """log |D| at w; -inf if D = 0. polynomials: propagators for |w| <= W, (elements, terms,
-    PADDED_LENGTH)."""
+    PROPAGATOR_LENGTH)."""
     D, S = scaled_determinant_from_propagators(w, W, polynomials)
     return S + math.log(abs(D)) if D != 0 else -math.inf
 
@@ -187,11 +187,11 @@ def log_modulus_from_propagators(w: complex, W: float, polynomials: Array) -> fl
 def path_value_from_propagators(
     w: complex, W: float, polynomials: Array, p_derivatives: Array
 ) -> PathDeterminantValue:
-    """D, dD/dw and dD/dp at w, times exp(-S). At real w every value is real.
+    """D, dD/dw and dD/dp at w, times exp(-S), S = `log_scale` of the result. At real w every value is real.
 
     polynomials, p_derivatives: propagators valid for |w| <= W and their derivatives by p, (elements, terms,
-    PADDED_LENGTH). dD/dp is 0 if `p_derivatives` is empty. The rounding error is the error of the products at
-    the tip; the bound of the whole error is
+    PROPAGATOR_LENGTH). dD/dp is 0 if `p_derivatives` is empty. The rounding error is the error of the
+    products at the tip; the bound of the whole error is
     `rodsweep.determinant.arm.rounding.rounding_error_from_propagators`.
     """
     if w.imag == 0:
@@ -203,7 +203,7 @@ def path_value_from_propagators(
 
 @compiled
 def determinant_from_propagators(w: complex, W: float, polynomials: Array) -> DeterminantValue:
-    """D and dD/dw at w, times exp(-S). polynomials: propagators for |w| <= W, (elements, terms,
-    PADDED_LENGTH)."""
+    """D and dD/dw at w, times exp(-S), S = `log_scale` of the result. polynomials: propagators for |w| <= W,
+    (elements, terms, PROPAGATOR_LENGTH)."""
     D, D_w, _, S, rounding_error = path_value_from_propagators(w, W, polynomials, polynomials[:0])
     return DeterminantValue(D, D_w, S, rounding_error)

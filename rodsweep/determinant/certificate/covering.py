@@ -44,15 +44,15 @@ class BoxProofSettings(KernelConstants):
     max_half_width_over_radius_trials: int = 30
     """Maximum number of trial ratios t, of which the last is 2e-7."""
     min_half_width_over_centre: float = 1e-9
-    """An undecided box is left open, undivided, if half-widths are below this number times eta and |p|."""
+    """An undecided box is left open if its half-widths are below this number times eta and times |p|."""
     max_boxes: int = 1_000_000
     """After this number of examined boxes, further undecided boxes are left open, not divided."""
     max_known_zero_distance_in_half_widths: float = 1.5
     """Distance from the centre of a regular box, in half-widths of the box, up to which a known zero is the
     only zero in the doubled box."""
     neighbour_zero_distance_in_half_widths: float = 0.01
-    """Distance beyond the edge of a regular box, in half-widths of the box, from which a zero is left to the
-    neighbouring box that contains it."""
+    """A zero farther than this distance beyond the edge of a regular box, in half-widths of the box, is left
+    to the neighbouring box that contains the zero."""
     field_ranges: ClassVar = {
         "first_half_width_over_radius": (0.0, 1.0),
         "half_width_over_radius_factor": (0.0, 1.0),
@@ -96,7 +96,7 @@ def distance_from_zero_bound(value: complex, a: complex, b: complex) -> float:
 
 
 @compiled
-def mean_exponent_slopes(centre: BidiscCentre) -> DerivativePair:
+def modulus_weighted_exponent_slopes(centre: BidiscCentre) -> DerivativePair:
     """(L, K): the slopes d sqrt(z)/dw and d sqrt(z)/dp of the exponents, averaged over the two exponentials
     of D with their moduli as weights."""
     root_plus = cmath.sqrt(centre.z_plus)
@@ -140,13 +140,13 @@ def box_outcome_and_costs(
 ) -> tuple[int, float, float]:
     """Returns (outcome, cost in eta, cost in p) for the box about w = i eta with half-widths `half`.
 
-    outcome: ZERO_FREE_BOX, BOX_WITH_AT_MOST_ONE_ZERO or UNDECIDED_BOX. cost: for an undecided box, the change
-    of the exponents of D across the box in this variable; the variable with the higher cost is divided. 0 for
-    other boxes. coefficients, direction: coefficients at the centre and their derivative by p.
+    outcome: ZERO_FREE_BOX, BOX_WITH_AT_MOST_ONE_ZERO or UNDECIDED_BOX. cost: change of the exponents of D
+    across an undecided box in eta or in p, 0 for other boxes; the variable with the higher cost is divided.
+    coefficients, direction: coefficients at the centre and their derivative by p.
     """
     D, D_w, D_p, S, rounding_error = determinant_value_on_path(w, coefficients, direction)
     centre = bidisc_centre(w, coefficients, dispersion_coefficient_derivatives(coefficients, direction), S)
-    mean = mean_exponent_slopes(centre)
+    mean = modulus_weighted_exponent_slopes(centre)
     rounding = DISC_BOUND_SETTINGS.rounding_safety_factor * rounding_error
     if abs(D) > 2 * rounding:
         # The logarithmic derivatives are best where one exponential dominates, the mean where both matter.
@@ -173,7 +173,7 @@ def box_outcome_and_costs(
 
 @compiled
 def exponent_changes(centre: BidiscCentre, half: tuple[float, float]) -> tuple[float, float]:
-    """Changes of the exponents of D across a box in eta and in p; half: half-widths of the box."""
+    """Returns the changes of the exponents of D across a box (in eta, in p). half: half-widths of the box."""
     F, nu, c2, gamma3 = centre.coefficients
     size = abs(centre.w)
     root_plus = math.sqrt(max(abs(centre.z_plus), 1.0))
@@ -194,11 +194,11 @@ def exponent_changes(centre: BidiscCentre, half: tuple[float, float]) -> tuple[f
 
 
 @compiled
-def cover_with_boxes(
+def zeros_and_open_boxes_of_covering(
     first: Array, origin: Coefficients, direction: Coefficients
 ) -> tuple[list[LocatedEigenvalue], list[CrossingBox], int]:
-    """Returns (zeros of D(i eta; p) in the boxes `first`, (n, 4); boxes left open; number of examined boxes).
-    origin, direction: coefficients at p = 0 and their derivative by p."""
+    """Returns (zeros of D(i eta; p), boxes left open, number of examined boxes). first: boxes to search, (n,
+    4), rows as `CrossingBox`. origin, direction: coefficients at p = 0 and their derivative by p."""
     stack = [CrossingBox(first[i, 0], first[i, 1], first[i, 2], first[i, 3]) for i in range(len(first))]
     # numba infers the type of an empty list from its element.
     zeros = [FAILED_EIGENVALUE for _ in range(0)]

@@ -23,8 +23,8 @@ class DiscBoundSettings(KernelConstants):
     """Settings for upper bounds of D over discs in w and bidiscs in (w, p)."""
 
     rounding_safety_factor: float = 4.0
-    """|rounding error of D| <= this number times `rounding_error` of the value; the largest ratio of 20 000
-    unfavourable values was 0.7."""
+    """|rounding error of D| <= this number times `DeterminantValue.rounding_error`; the largest ratio of
+    20,000 unfavourable values was 0.7."""
     max_D_change_ratio: float = 0.9
     """A proof needs a change of D over the disc below this number times |D|; below 1, so that D is not 0."""
     max_relative_z_change_for_expansion: float = 0.5
@@ -46,13 +46,14 @@ DISC_BOUND_SETTINGS = DiscBoundSettings()
 DerivativePair = tuple[complex, complex]
 """(derivative by w, derivative by p)."""
 BidiscRadii = tuple[float, float]
-"""(radius in w, radius in p) of a bidisc; also a pair of real bounds."""
+"""(radius in w, radius in p) of a bidisc; also used for a pair of real bounds."""
 
 
 class BidiscCentre(NamedTuple):
     """The centre (w, p) of a bidisc, with the exponents of D at the centre. coefficients: (F, nu, c2, gamma3)
-    at p. dispersion_coefficient_derivatives: of T, N, G and X by p. log_scale: S, the logarithm of the scale
-    of D. P, z_plus, z_minus: P, z+ and z-. z_plus_slopes, z_minus_slopes: (dz/dw, dz/dp) of z+ and of z-."""
+    at p. dispersion_coefficient_derivatives: derivatives of T, N, G and X by p. log_scale: S, the logarithm
+    of the scale of D. P, z_plus, z_minus: P, z+ and z-. z_plus_slopes, z_minus_slopes: (dz/dw, dz/dp) of z+
+    and of z-."""
 
     w: complex
     coefficients: Coefficients
@@ -110,8 +111,7 @@ def entire_cosh_bounds_on_bidisc(
     nonlinear_change: float,
     S: float,
 ) -> BidiscRadii:
-    """Bounds of |E(z)| and |dE/dz| over a bidisc about z, both times |exp(-L dw - K dp)| exp(-S).
-
+    """Bounds of |E| and |dE/dz|, E = (cosh sqrt(z) - 1)/z, over a bidisc, times |exp(-L dw - K dp)| exp(-S).
     slopes: (dz/dw, dz/dp). rates: (L, K). nonlinear_change: bound of the nonlinear change of z. S: logarithm
     of the scale of D. The exponents +-sqrt(z) - L dw - K dp are bounded by means of |sqrt(z)| and, away from
     z = 0, by the Taylor polynomial of sqrt(z); the smaller bound is used. Then |E| <= exp(Re sqrt z)/2 and

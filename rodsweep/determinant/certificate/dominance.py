@@ -32,7 +32,7 @@ class DominanceSettings(KernelConstants):
     z+-."""
     max_halvings: int = 2
     """The segment of proved dominance ends if a trial disc halved this many times is still not proved."""
-    overlap_enlargement_fraction: float = 1e-3
+    enlargement_fraction_for_overlap: float = 1e-3
     """The radius of a disc exceeds half the step that the disc covers by this fraction, so that rounding
     leaves no gap between discs."""
     segment_end_tolerance: float = 1e-15
@@ -186,7 +186,7 @@ def phase_over_dominated_segment(
         for _ in range(DOMINANCE_SETTINGS.max_halvings + 1):
             disc_count += 1
             # The disc is a little wider than the step, so that rounding leaves no gap between discs.
-            radius = (1 + DOMINANCE_SETTINGS.overlap_enlargement_fraction) * rho
+            radius = (1 + DOMINANCE_SETTINGS.enlargement_fraction_for_overlap) * rho
             if has_dominant_exponential(w + direction * rho, radius, coefficients):
                 proved = True
                 break

@@ -1,8 +1,8 @@
 """The first boxes of a covering of the (eta, p) plane, outside which the a-priori bounds exclude every
 crossing.
 
-The a-priori bounds (`box`) hold on an interval of the path. Intervals of p are so short that no coefficient
-changes much over an interval.
+The a-priori bounds (`box_of_all_eigenvalues`) hold on an interval of the path. Intervals of p are so short
+that no coefficient changes much over an interval.
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 
 from ...arrays import Array
 from ..parameter_path import ParameterPath, coefficients_at
-from .eigenvalue_box import BOX_SETTINGS, frequency_bound_on_path, zero_free_radius
+from .box_of_all_eigenvalues import BOX_SETTINGS, frequency_bound_on_path, zero_free_radius
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,7 +38,9 @@ class CoveringSettings:
 COVERING_SETTINGS = CoveringSettings()
 
 
-def path_intervals(path: ParameterPath, p_start: float, p_stop: float) -> list[tuple[float, float]]:
+def path_intervals_of_bounded_change(
+    path: ParameterPath, p_start: float, p_stop: float
+) -> list[tuple[float, float]]:
     """Intervals (start, end) of p from `p_start` to `p_stop`; over each interval nu at most halves, and a
     drag or compliance at most doubles, except on the shortest intervals."""
     edges = [p_start]
@@ -50,7 +52,7 @@ def path_intervals(path: ParameterPath, p_start: float, p_stop: float) -> list[t
         slope = path.direction.nu
         if slope < 0:  # the rod is crushed at nu = 0
             step = min(step, COVERING_SETTINGS.max_nu_decrease_fraction * nu / -slope)
-        if path.name != "F":  # drag and compliances vary over decades
+        if path.parameter_name != "F":  # drag and compliances vary over decades
             step = min(step, max(p, COVERING_SETTINGS.min_interval_over_longest * width))
         end = p + step
         # On a path of a few roundings, p + step is p.
@@ -61,9 +63,9 @@ def path_intervals(path: ParameterPath, p_start: float, p_stop: float) -> list[t
 
 def first_crossing_boxes(path: ParameterPath, p_start: float, p_stop: float) -> Array | None:
     """Boxes (eta_from, eta_to, p_from, p_to) that contain every crossing with p from p_start to p_stop, (n,
-    4). None if no a-priori bound exists, or if the lower bound of eta underflows, or almost."""
+    4). None if no a-priori bound exists, or if the lower bound of eta is 0 or almost underflows."""
     boxes = []
-    for interval_start, interval_end in path_intervals(path, p_start, p_stop):
+    for interval_start, interval_end in path_intervals_of_bounded_change(path, p_start, p_stop):
         max_eta = (1 + BOX_SETTINGS.relative_bound_excess) * frequency_bound_on_path(
             path, interval_start, interval_end
         ) + COVERING_SETTINGS.eta_padding

@@ -1,8 +1,9 @@
 """Proved number of transverse eigenvalues of a uniform rod right of a vertical line, without mesh or shift.
 
-All eigenvalues with Re w >= -depth lie in the box of `rodsweep.determinant.certificate.eigenvalue_box`, so
-their number is the winding number of the entire function D around the box. D is real on the real axis, so the
-upper half of the box suffices: count = (change of arg D along the upper half)/pi.
+All eigenvalues with Re w >= -depth lie in the box of
+`rodsweep.determinant.certificate.box_of_all_eigenvalues`, so their number is the winding number of the entire
+function D around the box. D is real on the real axis, so the upper half of the box suffices: count = (change
+of arg D along the upper half)/pi.
 
 The change of phase is proved. Where one exponential of D dominates, large discs without a zero of D are
 proved (`rodsweep.determinant.certificate.dominance`); elsewhere the contour is covered by smaller discs about
@@ -21,8 +22,8 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Coefficients, Rod
 from ..value import scaled_determinant
+from .box_of_all_eigenvalues import box_of_all_eigenvalues, zero_free_radius_of_rod
 from .dominance import phase_over_dominated_segment
-from .eigenvalue_box import eigenvalue_box, zero_free_radius_of_rod
 from .zero_free_disc import zero_free_disc_at
 
 
@@ -31,23 +32,26 @@ class WindingSettings(KernelConstants):
     """Settings for the contour around which the winding number of D is computed."""
 
     contour_width_factor: float = 4.0
-    """Factor on the width of the box. Wider is cheaper: one exponential dominates D far from eigenvalues."""
+    """Factor on the width of the box. A wider box is cheaper: far from eigenvalues one exponential dominates
+    D."""
     additional_contour_width: float = 50.0
     """Length added to the width of the box, in 1/tau2, because a wider box is cheaper to walk around."""
     min_contour_height_over_line_distance: float = 0.5
     """Smallest height of the box divided by the distance of the line from the imaginary axis."""
     integer_tolerance: float = 1e-3
     """The count fails if the computed winding number differs from the nearest integer by more than this."""
-    node_walk_length_over_w: float = 0.25
+    dominance_retry_distance_over_w: float = 0.25
     """After a failed proof of dominance at w, the phase is followed by nodes over this length times |w|
     before dominance is tried again. The length doubles after each failure."""
     first_step_over_zero_free_radius: float = 1.9
     """The first step tried from a node is this number times its zero-free radius. A step beyond the zero-free
     radius needs a next node whose zero-free radius covers the step."""
     safe_step_over_radius: float = 0.999
-    """If the first step fails, the step is this times the zero-free radius: below 1, because of rounding."""
+    """If the first step fails, the next is this number, below 1 because of rounding, times the zero-free
+    radius."""
     min_zero_free_radius_over_w: float = 1e-13
-    """The count fails if the zero-free radius of a node is below this times |w|: a zero is too close."""
+    """The count fails if the zero-free radius of a node w is below this number times |w|: a zero is too
+    close."""
     max_edge_nodes: int = 20_000
     """Maximum number of nodes on one edge of the box; the paper's rods need about 30 nodes on all edges."""
     field_ranges: ClassVar = {"safe_step_over_radius": (0.0, 1.0)}
@@ -67,7 +71,7 @@ NO_INTEGER_MESSAGE = "the winding number of D is not an integer within rounding 
 @dataclass(frozen=True, slots=True)
 class EigenvalueCount:
     """Number of eigenvalues right of a vertical line. number: None if the count failed. node_count: number of
-    nodes and discs on the contour. failure_reason: reason of the failure."""
+    nodes and discs on the contour. failure_reason: reason of the failure, "" if the count succeeded."""
 
     number: int | None
     node_count: int
@@ -84,7 +88,7 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
     t = 0.0
     total = 0.0
     node_count = 0
-    node_walk_length = WINDING_SETTINGS.node_walk_length_over_w
+    node_walk_length = WINDING_SETTINGS.dominance_retry_distance_over_w
     while t < length:
         w = start + direction * t
         dominated_length, change, discs = phase_over_dominated_segment(w, direction, length - t, coefficients)
@@ -92,7 +96,7 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
         node_count += discs
         # Dominance that fails is tried again only after a longer walk: each failure costs three discs.
         node_walk_length = (
-            WINDING_SETTINGS.node_walk_length_over_w if dominated_length > 0 else 2 * node_walk_length
+            WINDING_SETTINGS.dominance_retry_distance_over_w if dominated_length > 0 else 2 * node_walk_length
         )
         t = length if dominated_length == length - t else t + dominated_length
         if t < length:
@@ -180,7 +184,7 @@ def contour_phase_change(
 def count_right_of(line: float, rod: Rod) -> EigenvalueCount:
     """Proved number of transverse eigenvalues of a uniform rod with Re w > line, for any real `line`, in
     1/tau2. A failed proof raises no exception: `number` is then None and `failure_reason` the reason."""
-    max_real, max_imag = eigenvalue_box(rod, max(-line, 0.0))
+    max_real, max_imag = box_of_all_eigenvalues(rod, max(-line, 0.0))
     if not math.isfinite(max_imag) or not math.isfinite(max_real):
         place = f"at F = {rod.F:g}"
         return EigenvalueCount(None, 0, f"no a-priori bound on the eigenvalues applies to this rod {place}")

@@ -25,7 +25,7 @@ from ..parameter_path import DispersionCoefficientDerivatives
 from ..value import exponent_derivatives, scaled_determinant
 from .discs import DISC_BOUND_SETTINGS, bidisc_centre, bound_on_bidisc
 
-NO_COEFFICIENT_CHANGE = DispersionCoefficientDerivatives(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+ZERO_COEFFICIENT_DERIVATIVES = DispersionCoefficientDerivatives(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Derivatives of the coefficients along a path, all 0: bounds then apply to a single rod."""
 
 
@@ -99,7 +99,7 @@ def zero_free_disc_at(w: complex, coefficients: Coefficients) -> ZeroFreeDiscNod
     if not max_remainder > 0:
         return ZeroFreeDiscNode(w, D, 0j, 0.0)
     L = D_w / D
-    centre = bidisc_centre(w, coefficients, NO_COEFFICIENT_CHANGE, S)
+    centre = bidisc_centre(w, coefficients, ZERO_COEFFICIENT_DERIVATIVES, S)
     valid_radius = 0.0
     rho = trial_radius(w, coefficients, L, S)
     # Half the radius may prove more, because the bound M grows exponentially with the radius.

@@ -42,7 +42,7 @@ def crossing_by_newton(
     Returns `FAILED_EIGENVALUE` if a step exceeds `ROOT_NEWTON_SETTINGS.max_step_over_expected_value`, if eta
     <= 0, if the Jacobian is singular, or if the method does not converge."""
     last = math.inf
-    for _ in range(ROOT_NEWTON_SETTINGS.max_steps):
+    for _ in range(ROOT_NEWTON_SETTINGS.max_steps_to_crossing):
         coefficients = coefficients_at(p, origin, direction)
         D, D_w, D_p, _, rounding_error = determinant_value_on_path(complex(0.0, eta), coefficients, direction)
         # D is complex, the unknowns eta and p are real: d/d(eta) of D(i eta) is i D_w.
@@ -80,7 +80,7 @@ def crossing_by_newton(
 def double_eigenvalue_by_newton(
     x: float, p: float, origin: Coefficients, direction: Coefficients, expected_distance: float
 ) -> LocatedEigenvalue:
-    """The double real eigenvalue D = D_w = 0 near the guess (x, p).
+    """The double real eigenvalue, where D = D_w = 0, near the guess w = x at p.
 
     origin, direction: coefficients at p = 0 and their derivative by p. expected_distance: expected distance
     of p from the guess. Returns `FAILED_EIGENVALUE` if p moves by more than twice `expected_distance`, if
@@ -89,10 +89,10 @@ def double_eigenvalue_by_newton(
     start = x
     first = p
     last = math.inf
-    for _ in range(2 * ROOT_NEWTON_SETTINGS.max_steps):
+    for _ in range(2 * ROOT_NEWTON_SETTINGS.max_steps_to_crossing):
         D, D_w, D_p, S, rounding_error = _real_determinant(x, p, origin, direction)
-        h = ROOT_NEWTON_SETTINGS.jacobian_step_ratio * abs(x)
-        k = ROOT_NEWTON_SETTINGS.jacobian_step_ratio * expected_distance
+        h = ROOT_NEWTON_SETTINGS.relative_jacobian_difference_step * abs(x)
+        k = ROOT_NEWTON_SETTINGS.relative_jacobian_difference_step * expected_distance
         _, D_w_right, _, S_right, _ = _real_determinant(x + h, p, origin, direction)
         _, D_w_left, _, S_left, _ = _real_determinant(x - h, p, origin, direction)
         _, after, _, S_after, _ = _real_determinant(x, p + k, origin, direction)
@@ -127,7 +127,8 @@ def double_eigenvalue_by_newton(
 def _real_determinant(
     x: float, p: float, origin: Coefficients, direction: Coefficients
 ) -> tuple[float, float, float, float, float]:
-    """Returns (D, D_w, D_p, S, rounding error of D) at real w = x and p, where all five are real."""
+    """Returns (D, D_w, D_p, S, rounding error of D), all but S times exp(-S), at real w = x and p, where all
+    five are real."""
     coefficients = coefficients_at(p, origin, direction)
     D, D_w, D_p, S, rounding_error = determinant_value_on_path(complex(x, 0.0), coefficients, direction)
     return D.real, D_w.real, D_p.real, S, rounding_error
@@ -141,7 +142,7 @@ def refine_eigenvalue(w: complex, coefficients: Coefficients, max_first_step: fl
     real = w.imag == 0
     # With the test below this demands a first step below max_first_step.
     last = 2 * max_first_step
-    for _ in range(ROOT_NEWTON_SETTINGS.max_refinements):
+    for _ in range(ROOT_NEWTON_SETTINGS.max_steps_to_eigenvalue):
         value = scaled_determinant(w, coefficients)
         if value.D_w == 0:
             break
@@ -160,7 +161,7 @@ def refine_eigenvalue(w: complex, coefficients: Coefficients, max_first_step: fl
 
 
 @compiled
-def eigenvalue_by_newton(
+def eigenvalue_with_slope_and_error(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> tuple[complex, complex, float]:
     """Returns (w, dw/dp, error of w) of the simple eigenvalue w of a uniform rod near the guess w. direction:

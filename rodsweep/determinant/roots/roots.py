@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
-from ..certificate.eigenvalue_box import box_from_sqrt_frequency_bound
+from ..certificate.box_of_all_eigenvalues import box_from_sqrt_frequency_bound
 from ..exponents import EXPONENT_SETTINGS
 from ..rounding_at_root import rounding_error_at_root
 from ..value import (
     distance_to_next_root,
-    eigenvalue_error_and_scales,
+    root_error_w_scale_and_wave_number,
     scaled_determinant,
     second_derivative,
 )
@@ -30,15 +30,15 @@ from .newton import refine_eigenvalue
 from .settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
 
 
-class Roots(NamedTuple):
+class RootsOfD(NamedTuple):
     """Eigenvalues of a mesh refined to roots w of D, sorted by descending real part, then frequency; all
     arrays are (k,).
 
     mesh_indices: index of each root in the list of eigenvalues of the mesh. error: absolute error estimates.
     relative_mesh_displacement: |eigenvalue of the mesh - root| / max(|w|, length over which D changes).
-    wave_number: largest |q|, in 1/L. is_imaginary: whether the root is imaginary within its error.
-    unmatched_mesh_eigenvalue_count: number of eigenvalues of the mesh that lie in the a-priori box right of
-    all roots and do not approximate a root.
+    wave_number: largest |q|, in 1/L; for arms the mean of |q| along the arm. is_imaginary: whether the root
+    is imaginary within its error. unmatched_mesh_eigenvalue_count: number of eigenvalues of the mesh that lie
+    in the a-priori box right of all roots and do not approximate a root.
     """
 
     mesh_indices: NDArray[np.int64]
@@ -53,14 +53,14 @@ class Roots(NamedTuple):
 @compiled
 def root_error_and_scales(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
     """Returns (estimated distance from w to the nearest root of D, length, wave number), as
-    `eigenvalue_error_and_scales`, but also near double roots.
+    `root_error_w_scale_and_wave_number`, but also near double roots.
 
-    With e = max(|D|, rounding error of D), the Newton correction e/|D'| is valid if |D'|^2 is large against
-    e |D''|. Otherwise w lies at the distance |D'/D''| from the middle of two roots, and these lie within
-    sqrt(2 e/|D''|) of the middle. The rounding error of D is the typical one at a well-conditioned eigenvalue
-    and one that covers nearly all roundings at another.
+    With e = max(|D|, rounding error of D), the Newton correction e/|D'| is valid if |D'|^2 is large against e
+    |D''|. Otherwise w lies at the distance |D'/D''| from the middle of two roots, and the roots lie within
+    sqrt(2 e/|D''|) of the middle. At a well-conditioned eigenvalue the rounding error of D is a typical
+    value, at any other eigenvalue a value that covers nearly all roundings.
     """
-    error, length, wave = eigenvalue_error_and_scales(w, coefficients)
+    error, length, wave = root_error_w_scale_and_wave_number(w, coefficients)
     if error > ROOT_SETTINGS.min_ill_conditioned_relative_error * abs(w):
         D, D1, S, _ = scaled_determinant(w, coefficients)
         rounding_error = rounding_error_at_root(w, coefficients, S)
@@ -99,9 +99,9 @@ def roots_of_parabola(middle: complex, D: complex, D1: complex, D2: complex) -> 
 
 @compiled
 def _separate_close_pairs(w: Complex, error: Array, coefficients: Coefficients) -> Array:
-    """Replaces, in w, every two eigenvalues closer than their errors by estimates of two roots of D. w,
-    error: eigenvalues and their errors, (n,). Returns for each eigenvalue half its distance from its partner,
-    (n,); inf if the eigenvalue was not moved."""
+    """Replaces, in w, every pair closer than `max_pair_distance_in_errors` times the sum of its errors by two
+    estimates of roots of D. w, error: eigenvalues and errors, (n,). Returns for each eigenvalue half the new
+    distance from its partner, (n,); inf if the eigenvalue was not moved."""
     half_distances = np.full(len(w), math.inf)
     for i in range(len(w)):
         if half_distances[i] < math.inf:
@@ -115,7 +115,7 @@ def _separate_close_pairs(w: Complex, error: Array, coefficients: Coefficients) 
         if nearest_index >= 0 and min_distance <= ROOT_SETTINGS.max_pair_distance_in_errors * (
             error[i] + error[nearest_index]
         ):
-            for _ in range(ROOT_SETTINGS.parabolas_per_pair):
+            for _ in range(ROOT_SETTINGS.successive_parabolas_per_pair):
                 middle = (w[i] + w[nearest_index]) / 2
                 # The pair's centre is exactly real, and must stay so: its two roots are real or conjugate.
                 if w[nearest_index] == w[i].conjugate() or (w[i].imag == 0 and w[nearest_index].imag == 0):
@@ -151,12 +151,13 @@ def sort_indices_descending(w: Complex, order: NDArray) -> None:
 
 
 @compiled
-def refined_roots(raw: Complex, coefficients: Coefficients, sqrt_bound: float, max_q: float) -> Roots:
-    """Roots of D, refined from the eigenvalues of a mesh in `raw`, (n,), that approximate a root of D.
+def refined_roots(raw: Complex, coefficients: Coefficients, sqrt_bound: float, max_q: float) -> RootsOfD:
+    """Roots of D, refined from the eigenvalues of a mesh in `raw`, (n,), that approximate a root
+    of D.
 
-    sqrt_bound: square root of `rodsweep.determinant.certificate.eigenvalue_box.frequency_bound`. max_q:
-    largest wave number |q| that the mesh resolves. Infinite eigenvalues, which rounding makes finite, are
-    dropped: they lie outside the a-priori box, have too large a |q|, or are far from every root.
+    sqrt_bound: square root of `rodsweep.determinant.certificate.box_of_all_eigenvalues.frequency_bound`.
+    max_q: largest wave number |q| that the mesh resolves. Infinite eigenvalues, which rounding makes finite,
+    are dropped: they lie outside the a-priori box, have too large a |q|, or are far from every root.
     """
     error: Array = np.empty(len(raw))
     length: Array = np.empty(len(raw))
@@ -196,7 +197,7 @@ def refined_roots(raw: Complex, coefficients: Coefficients, sqrt_bound: float, m
     )
     # An eigenvalue in the box that leads all roots is spurious, or the trace of a root that was missed.
     spurious_count = (inside & ~is_near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
-    return Roots(indices, w, error, displacement, wave, axis, int(spurious_count))
+    return RootsOfD(indices, w, error, displacement, wave, axis, int(spurious_count))
 
 
 @compiled
@@ -229,8 +230,9 @@ def _refine_candidates(
 
 @compiled
 def _increase_errors_of_equal_roots(w: Complex, error: Array, coefficients: Coefficients) -> None:
-    """Raises, in place, the errors of any two entries of w that converged to the same root of D, to at least
-    2 |D'/D''|, the distance of the next root. w, error: roots and their errors, (n,)."""
+    """Increases, in place, the errors of any two entries of w that converged to the same root of D; the
+    errors are then at least 2 |D'/D''|, the distance to the next root. w, error: roots and their errors,
+    (n,)."""
     for i in range(len(w)):
         for j in range(i + 1, len(w)):
             distance = abs(w[i] - w[j])

@@ -16,20 +16,19 @@ from .quadrature import gauss_lobatto_rule
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ElementSettings:
-    """Settings of elements: points close to the ends of elements, and maximum sizes of caches and of dense
-    matrices."""
+    """Settings of elements: points close to the ends of elements, smallest order, maximum sizes of caches."""
 
     one_sided_node_offset: float = 1e-15
     """Distance of the first and last `Elements.one_sided_nodes` from the ends of an element, in L: a
     few rounding errors of u. With 1e-9, the largest y of cycles near the Hopf point of a cone had an error of
     1e-8 on every mesh."""
-    min_reduced_order: int = 2
+    min_order_below_mesh_order: int = 2
     """Smallest order of an element whose order is less than the order of the mesh. Only coarse meshes, which
     predict cycles on fine meshes, have elements of orders below 4."""
     max_cached_meshes: int = 64
     """Maximum number of cached meshes, and of cached matrices of each kind; a sweep needs about ten."""
     max_cached_pencils: int = 16
-    """Maximum number of cached pencils; a pencil for 300 growing modes takes 10 MB."""
+    """Maximum number of cached pencils (10 MB for 300 growing modes), orbit equations and tail weights."""
     max_cached_mesh_pairs: int = 256
     """Maximum number of cached interpolation matrices between two meshes, and of cached lists of edges."""
 
@@ -41,8 +40,8 @@ ELEMENT_SETTINGS = ElementSettings()
 class Elements:
     """Elements on the rod. Element e reaches from edges[e] to edges[e + 1]; edges[0] is 0 and edges[-1] is 1.
     order: largest order of an element. order_ratios: order of each element divided by `order`, before
-    `element_orders` rounds the order up; empty if all orders are equal. node_spacing_ratios: ratio s of
-    `node_spacing` of each element; empty if all are 1. In shapes, `nodes` is `node_count`,
+    `element_orders` rounds the order up; empty if all orders are equal. node_spacing_ratios: spacing ratio s
+    of each element, see the module `node_spacing`; empty if all are 1. In shapes, `nodes` is `node_count`,
     which does not count one end of the rod, and `elements` is the number of elements."""
 
     edges: tuple[float, ...]
@@ -78,7 +77,7 @@ class Elements:
 
     @cached_property
     def node_spacing_ratio_of_elements(self) -> tuple[float, ...]:
-        """Ratio s of `node_spacing` of each element."""
+        """Spacing ratio s of each element, see the module `node_spacing`."""
         return self.node_spacing_ratios or (1.0,) * self.element_count
 
     @cached_property
@@ -120,7 +119,7 @@ class Elements:
     @cached_property
     def one_sided_nodes(self) -> Array:
         """Coordinates u of the nodes of every element, (nodes + elements,), with the end nodes moved just
-        inside: at a jump, each element evaluates a coefficient on its own side."""
+        inside the element, so that at a jump each element evaluates a coefficient on its own side."""
         distance = ELEMENT_SETTINGS.one_sided_node_offset
         return np.concatenate(
             [
@@ -152,7 +151,7 @@ class Elements:
 
     def element_indices(self, points: Array) -> NDArray[np.integer]:
         """Index of the element of each of the `points`, (n,), in [0, 1]. A point between two elements belongs
-        to the right element."""
+        to the element on the right."""
         # The clip puts u = 1, which lies right of the last edge, into the last element.
         return np.clip(np.searchsorted(self.edges, points, side="right") - 1, 0, self.element_count - 1)
 
@@ -178,8 +177,9 @@ class Elements:
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
 def element_orders(element_count: int, order: int, ratios: tuple[float, ...]) -> tuple[int, ...]:
     """Orders of `element_count` elements: `order` times each of `ratios`, rounded up, between
-    `ELEMENT_SETTINGS.min_reduced_order` and `order`; `order` for all elements if `ratios` is empty."""
-    min_order = min(ELEMENT_SETTINGS.min_reduced_order, order)
+    `ELEMENT_SETTINGS.min_order_below_mesh_order` and `order`; `order` for all elements if `ratios` is
+    empty."""
+    min_order = min(ELEMENT_SETTINGS.min_order_below_mesh_order, order)
     return tuple(max(min_order, ceil(ratio * order)) for ratio in ratios) or (order,) * element_count
 
 

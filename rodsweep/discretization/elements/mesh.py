@@ -30,9 +30,9 @@ SHAPE_QUADRATURE_SETTINGS = ShapeQuadratureSettings()
 
 
 class NodeMatrices(NamedTuple):
-    """Matrices over all nodes of a mesh: D, D^T and -D^T W (`weak_derivative_matrix`), (nodes + 1, nodes +
-    1), and the weights W, (nodes + 1,). differentiation_matrix: differentiation. W: lumped mass. All arrays
-    are contiguous, for inner loops over the nodes."""
+    """Matrices over all nodes of a mesh: D (`differentiation_matrix`), D^T and -D^T W
+    (`weak_derivative_matrix`), (nodes + 1, nodes + 1), and the weights W, the lumped mass, (nodes + 1,). All
+    arrays are contiguous, for inner loops over the nodes."""
 
     differentiation_matrix: Array
     transposed_differentiation_matrix: Array
@@ -46,7 +46,7 @@ class Mesh(Elements):
     """Elements with matrices over all nodes. `node_count` is the number of nodes without the tip. Meshes with
     equal edges, orders and spacing compare equal, also in different processes."""
 
-    # The matrices follow from these, and an array comparison has no single truth value.
+    # The matrices follow from the other fields, and an array comparison has no single truth value.
     node_matrices: NodeMatrices = field(compare=False, repr=False)
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
@@ -102,8 +102,9 @@ def interpolation_matrix(source: Mesh, target: Mesh) -> Array:
 
 
 def shape_from_strains(mesh: Mesh, strains: Array, clamp: Array) -> Array:
-    """Shape (x, y, theta) of a rod at all nodes, (3, ..., nodes + 1), from its strains. strains: (h1, h2, Pi)
-    at the nodes of every element, (3, ..., nodes + elements). clamp: (x, y, theta) at u = 0, (3,)."""
+    """Shape (x, y, theta), in L and rad, of a rod at all nodes, (3, ..., nodes + 1), from its strains.
+    strains: (h1, h2, Pi) at the nodes of every element, (3, ..., nodes + elements). clamp: (x, y, theta) at u
+    = 0, (3,)."""
     gauss_point_count = mesh.order + SHAPE_QUADRATURE_SETTINGS.extra_point_count
     shape = np.empty((*strains.shape[:-1], mesh.node_count + 1), strains.dtype)
     start = np.broadcast_to(clamp.reshape(3, *(1,) * (strains.ndim - 1)), (3, *strains.shape[1:-1], 1))
@@ -146,7 +147,7 @@ def shape_integration_matrices(
     order: int, gauss_point_count: int = 0, spacing_ratio: float = 1.0
 ) -> ShapeIntegrationMatrices:
     """The `ShapeIntegrationMatrices` of elements of order `order`, cached. gauss_point_count: number of Gauss
-    points; 0: `order` plus `SHAPE_QUADRATURE_SETTINGS.extra_point_count`. spacing_ratio: ratio s of
+    points; 0: `order` plus `SHAPE_QUADRATURE_SETTINGS.extra_point_count`. spacing_ratio: s of the module
     `node_spacing`."""
     x = gauss_lobatto_rule(order)[0]
     g = gauss_legendre_rule(gauss_point_count or order + SHAPE_QUADRATURE_SETTINGS.extra_point_count)[0]
@@ -161,7 +162,7 @@ def shape_integration_matrices(
 def integration_matrix(nodes: Array, upper_limits: Array, spacing_ratio: float = 1.0) -> Array:
     """Matrix (m, n) from values at `nodes`, (n,), to integrals of the interpolating polynomial along an
     element of length 1, from its start to `upper_limits`, (m,). All coordinates are in [-1, 1].
-    spacing_ratio: ratio s of `node_spacing`."""
+    spacing_ratio: s of the module `node_spacing`."""
     # n Gauss points are exact up to degree 2 n - 1: for the interpolant, of degree n - 1, times the first
     # n + 1 powers of the slope of the positions.
     points, weights = gauss_legendre_rule(len(nodes))

@@ -14,7 +14,8 @@ from ...arrays import Array
 
 
 def positions_at_coordinates(t: Array, spacing_ratio: float) -> Array:
-    """Positions v along an element, in [0, 1], at the coordinates t, in [0, 1]; the shape is that of t."""
+    """Positions v along an element, in [0, 1], at the coordinates t, in [0, 1]; an array of the shape of
+    t."""
     if spacing_ratio == 1:
         return t
     v: Array = np.expm1(t * np.log(spacing_ratio)) / (spacing_ratio - 1)
@@ -22,7 +23,7 @@ def positions_at_coordinates(t: Array, spacing_ratio: float) -> Array:
 
 
 def coordinates_at_positions(v: Array, spacing_ratio: float) -> Array:
-    """Coordinates t of an element, in [0, 1], at the positions v, in [0, 1]; the shape is that of v."""
+    """Coordinates t of an element, in [0, 1], at the positions v, in [0, 1]; an array of the shape of v."""
     if spacing_ratio == 1:
         return v
     t: Array = np.log1p((spacing_ratio - 1) * v) / np.log(spacing_ratio)
@@ -30,7 +31,7 @@ def coordinates_at_positions(v: Array, spacing_ratio: float) -> Array:
 
 
 def position_slopes(t: Array, spacing_ratio: float) -> Array:
-    """dv/dt at the coordinates t of an element, in [0, 1]; the shape is that of t."""
+    """dv/dt at the coordinates t of an element, in [0, 1]; an array of the shape of t."""
     if spacing_ratio == 1:
         return np.ones_like(t)
     slopes: Array = np.log(spacing_ratio) / (spacing_ratio - 1) * spacing_ratio**t
@@ -38,5 +39,6 @@ def position_slopes(t: Array, spacing_ratio: float) -> Array:
 
 
 def node_spacing_ratios_of_halves(ratios: tuple[float, ...]) -> tuple[float, ...]:
-    """Spacing ratios of all elements after every element is halved: the spacing is linear in v."""
+    """Spacing ratios of both halves of every element, in order: for the ratio s, (1 + s)/2 and 2 s/(1 + s),
+    because the spacing is linear in v."""
     return tuple(half for s in ratios for half in ((1 + s) / 2, 2 * s / (1 + s)))

@@ -13,18 +13,18 @@ from math import ceil, hypot, log10, pi
 class ResolutionSettings:
     """Fitted constants of the order and number of elements (see the module docstring); limits of meshes."""
 
-    base_digits: int = 4
+    reference_digits: int = 4
     """The order is order_intercept + order_slope |q| for this number of digits of accuracy."""
     order_intercept: float = 4.0
-    """Order of a single element for `base_digits` digits at |q| = 0."""
+    """Order of a single element for `reference_digits` digits at |q| = 0."""
     order_slope: float = 0.49
-    """Increase of the order for `base_digits` digits per unit of |q|."""
+    """Increase of the order for `reference_digits` digits per unit of |q|."""
     order_per_digit_intercept: float = 0.7
     """Increase of the order for each further digit, at |q| = 0."""
-    order_per_digit_slope: float = 0.02
+    order_per_digit_and_wave_number: float = 0.02
     """Increase of the order for each further digit, per unit of |q|, in addition to
     `order_per_digit_intercept`."""
-    order_per_digit_max_wave_number: float = 35.0
+    wave_number_of_max_order_per_digit: float = 35.0
     """The increase of the order for each further digit is constant for |q| larger than this."""
     amplified_wave_safety_factor: float = 1.4
     """Safety factor on the wave number of the most amplified wave in the estimate of the largest |q|."""
@@ -34,9 +34,8 @@ class ResolutionSettings:
     accuracy_before_refinement: float = 1e-4
     """Relative accuracy of a mesh if its eigenvalues are then refined to roots of D."""
     max_wave_number_per_node: float = 2.0
-    """A mesh represents eigenvalues with wave number |q| <= `max_wave_number_per_node` * (elements * order),
-    where |q| is averaged along the rod; an element, with |q| <= `max_wave_number_per_node` * order /
-    length."""
+    """A mesh represents eigenvalues whose wave number |q|, averaged along the rod, is at most this number
+    times elements * order; an element represents |q| up to this number times order/length."""
     max_order: int = 32
     """Maximum order of an element. A further element costs less than a higher order."""
     min_order: int = 6
@@ -81,8 +80,8 @@ def expected_wave_number(mode_count: int, amplified_wave_number: float) -> float
 def mesh_accuracy(accuracy: float, needs_vectors: bool) -> float:
     """Relative accuracy that the eigenvalues of a mesh need for results of relative accuracy `accuracy`.
 
-    needs_vectors: whether eigenvectors are needed. The error of an eigenvector on a mesh is the square root
-    of the error of its eigenvalue. Without eigenvectors a mesh of the accuracy
+    needs_vectors: whether eigenvectors are needed. The relative error of an eigenvector on a mesh is about
+    the square root of the error of its eigenvalue. Without eigenvectors a mesh of the accuracy
     `RESOLUTION_SETTINGS.accuracy_before_refinement` suffices, because the eigenvalues are refined to roots of
     D.
     """
@@ -93,9 +92,9 @@ def required_order(wave_number: float, accuracy: float) -> float:
     """Order, not rounded up, of a single element that resolves exp(+-q u), |q| = wave_number, to the relative
     accuracy `accuracy`."""
     settings = RESOLUTION_SETTINGS
-    further_digits = max(-log10(accuracy), settings.base_digits) - settings.base_digits
-    order_per_digit = settings.order_per_digit_intercept + settings.order_per_digit_slope * min(
-        wave_number, settings.order_per_digit_max_wave_number
+    further_digits = max(-log10(accuracy), settings.reference_digits) - settings.reference_digits
+    order_per_digit = settings.order_per_digit_intercept + settings.order_per_digit_and_wave_number * min(
+        wave_number, settings.wave_number_of_max_order_per_digit
     )
     return settings.order_intercept + settings.order_slope * wave_number + further_digits * order_per_digit
 

@@ -24,7 +24,7 @@ class TrigonometricMaximumSettings(KernelConstants):
     """Maximum number of Newton steps from the largest sample to the maximum."""
     converged_step: float = 1e-9
     """Newton's method stops when |step| < converged_step, in periods; the error is about the squared step."""
-    max_bisections: int = 50
+    bisection_count: int = 50
     """Number of bisections of the interval between two samples around a zero, down to rounding error."""
 
 
@@ -76,7 +76,8 @@ def hermite_fourier_coefficients_of_columns(values: Array, slopes: Array, signs:
         for a in range(columns):
             # The second half of the period doubles or cancels the sum of a harmonic.
             factor = 2 * (1 + signs[a] * (1 - 2 * (k % 2))) / m
-            # By symmetry a field that repeats has even harmonics only, one that changes its sign odd ones.
+            # A field that repeats after half a period has even harmonics only, a field that changes its sign
+            # odd harmonics only.
             if factor == 0:
                 continue
             S = 0.0
@@ -110,7 +111,7 @@ def _cosine_sine_table(count: int) -> Array:
 
 
 def series_samples(c: Complex, count: int) -> Array:
-    """Re sum_k c_k exp(2 pi i k t) at `count` equidistant t, (count, ...); c: (harmonics, ...)."""
+    """Re sum_k c_k exp(2 pi i k t) at t = 0, 1/count, ..., 1 - 1/count, (count, ...); c: (harmonics, ...)."""
     samples: Array = series_samples_of_columns(np.ascontiguousarray(c).reshape(len(c), -1), count)
     return samples.reshape(count, *c.shape[1:])
 
@@ -156,12 +157,12 @@ def series_samples_of_columns(c: Complex, count: int) -> Array:
 
 
 def interpolate_samples(samples: Array, times: NDArray[np.floating]) -> Array:
-    """Trigonometric interpolant of samples, (N, ...), at `times`, (m,), in periods: (m, ...)."""
+    """The trigonometric interpolant, (m, ...), of samples, (N, ...), at `times`, (m,), in periods."""
     return series_values_at(fourier_coefficients(samples), times)
 
 
 def series_values_at(c: Complex, times: NDArray[np.floating]) -> Array:
-    """Re sum_k c_k exp(2 pi i k t), c: (harmonics, ...), at `times`, (m,), in periods: (m, ...)."""
+    """Re sum_k c_k exp(2 pi i k t), (m, ...), at `times` t, (m,), in periods; c: (harmonics, ...)."""
     waves = np.exp(2j * np.pi * np.outer(times, np.arange(len(c))))
     return (waves @ c.reshape(len(c), -1)).real.reshape(len(times), *c.shape[1:])
 
@@ -239,8 +240,8 @@ def time_of_rise_through_mean(samples: Array) -> float:
 
 @compiled_with_reordered_sums
 def _bisect_rising_zero(c: Complex, low: float, high: float) -> float:
-    """The zero of Re sum_k c_k exp(2 pi i k t) between low and high by bisection; c: (harmonics,)."""
-    for _ in range(TRIGONOMETRIC_MAXIMUM_SETTINGS.max_bisections):
+    """The zero of Re sum_k c_k exp(2 pi i k t) between t = low and t = high by bisection; c: (harmonics,)."""
+    for _ in range(TRIGONOMETRIC_MAXIMUM_SETTINGS.bisection_count):
         middle = (low + high) / 2
         if _series_value_slope_curvature(c, middle)[0] < 0:
             low = middle

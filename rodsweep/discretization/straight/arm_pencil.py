@@ -27,11 +27,12 @@ class _MeshMatrices(NamedTuple):
     the pencil of an arm.
 
     interpolation_to_gauss_points, derivatives_at_gauss_points: matrices from nodes to Gauss points, (p, p +
-    1). derivative_value_integrals: slope^T weights value, (p + 1, p + 1). arm_independent_entries: entries of
-    the first two blocks, which are the same for every arm, (n,). weights_over_half_length,
-    weights_times_half_length: Gauss weights divided by, and times, half the length of each element,
-    (elements, p). nodal_masses: mass of the nodes, (elements, p + 1). pattern_indices: index in the pattern
-    of each entry of all blocks, (m,). rows, columns: row and column of each entry of the pattern, (nnz,)."""
+    1). derivative_value_integrals: integrals of derivatives (rows) times values (columns) of the nodal
+    polynomials, (p + 1, p + 1). arm_independent_entries: entries of the first two blocks, which are the same
+    for every arm, (n,). weights_over_half_length, weights_times_half_length: Gauss weights divided by, and
+    times, half the length of each element, (elements, p). nodal_masses: mass of the nodes, (elements, p + 1).
+    pattern_indices: index in the pattern of each entry of all blocks, (m,). rows, columns: row and column of
+    each entry of the pattern, (nnz,)."""
 
     interpolation_to_gauss_points: Array
     derivatives_at_gauss_points: Array
@@ -109,8 +110,8 @@ class ArmPencil:
 
     def _sparsity_pattern(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
         """Returns (rows, columns, positions). rows, columns: row and column of each entry of the pattern,
-        (nnz,) each. positions: index in the pattern of each entry of all element blocks, (m,). Entries in the
-        row or column of the clamp have the index nnz."""
+        (nnz,) each. positions: for each entry of all element blocks, its index in the pattern, (m,); nnz for
+        entries in the row or column of the clamp."""
         n = self.node_count
         size = self.unknown_count
         y = self._y_indices
@@ -130,8 +131,9 @@ class ArmPencil:
 
 
 def _row_major_indices(rows: NDArray[np.int64], columns: NDArray[np.int64], size: int) -> NDArray[np.int64]:
-    """row * size + column of each entry of element blocks, flat; -1 if the row or column is the clamp. rows:
-    (elements, n). columns: (elements, m). size: number of unknowns."""
+    """Index row * size + column of each entry of all element blocks, flat; -1 if the row or column is the
+    clamp. rows, columns: rows and columns of the block of each element, (elements, n) and (elements, m).
+    size: number of unknowns."""
     keys = rows[:, :, None] * size + columns[:, None, :]
     clamped = (rows < 0)[:, :, None] | (columns < 0)[:, None, :]
     return np.where(clamped, -1, keys).ravel()
@@ -141,8 +143,9 @@ def _row_major_indices(rows: NDArray[np.int64], columns: NDArray[np.int64], size
 def _pencil_of_coefficients(
     F: float, coefficients: Array, matrices: _MeshMatrices
 ) -> tuple[Array, Array, Array]:
-    """Returns (A, B, scale), the fields of the `PencilMatrices` of an arm. F: follower force. coefficients:
-    at the Gauss points and then the nodes of each element, (6, elements, 2 order + 1)."""
+    """Returns (A, B, displacement_factors), the fields of the `PencilMatrices` of an arm. F: follower force.
+    coefficients: `LocalCoefficients` at the Gauss points, then at the nodes, of each element, (6, elements, 2
+    order + 1)."""
     elements, order = matrices.weights_times_half_length.shape
     nodes = elements * order
     push = np.zeros(nodes + 1)

@@ -9,7 +9,7 @@ import numpy as np
 from ...arrays import Array, list_of
 from ...model.dispersion import (
     fastest_growing_wave_numbers_at_ends,
-    local_growths_and_wave_numbers,
+    most_amplified_local_waves,
     sampled_arm,
 )
 from ...model.material.rod_material import RodMaterial
@@ -28,7 +28,8 @@ class ArmResolutionSettings:
     """Settings for the mesh of an arm that varies along its length."""
 
     max_element_radius_ratio: float = 2.2
-    """Maximum ratio of the radii at both ends of an element of a cone: order 12 gives eigenvalues to 1e-4."""
+    """Maximum ratio of the radii at both ends of a cone's element, at which order 12 gives eigenvalues to
+    1e-4."""
     profile_order_increase: int = 2
     """Increase of the order if coefficients vary within an element."""
     graded_element_length_ratio: float = 3.0
@@ -51,7 +52,7 @@ def arm_mesh(rod: Rod, mode_count: int, accuracy: float) -> ArmMesh:
     """The mesh expected to give `mode_count` leading eigenvalues of the arm `rod` to the relative
     `accuracy`."""
     weights = sampled_arm(rod).interval_lengths
-    _, amplified_q = local_growths_and_wave_numbers(rod)
+    _, amplified_q = most_amplified_local_waves(rod)
     unloaded_q = (mode_count - RESOLUTION_SETTINGS.mode_number_offset) * pi * _wave_number_over_mean(rod)
     wave_numbers = np.hypot(RESOLUTION_SETTINGS.amplified_wave_safety_factor * amplified_q, unloaded_q)
     order_increase = (
@@ -70,20 +71,20 @@ def _cached_mesh(edges: tuple[float, ...], order: int) -> ArmMesh:
 
 
 def graded_towards_ends(rod: Rod, mesh: ArmMesh) -> ArmMesh:
-    """The mesh with elements graded towards an end of the arm, if the mesh does not represent the most
-    amplified local wave of this end; else `mesh` itself. The leading eigenfunctions of an arm with a thin
+    """The mesh with elements graded towards each end of the arm whose most amplified local wave `mesh` does
+    not represent; `mesh` itself if there is no such end. The leading eigenfunctions of an arm with a thin
     end, where g < 0, are confined to a small fraction of the last element."""
     wave_numbers = fastest_growing_wave_numbers_at_ends(rod)
     edges = np.array(mesh.edges)
-    first = _end_element_divisions(float(edges[1]), mesh.order, float(wave_numbers[0]))
-    last = _end_element_divisions(float(edges[-1] - edges[-2]), mesh.order, float(wave_numbers[1]))
+    first = _division_distances_from_end(float(edges[1]), mesh.order, float(wave_numbers[0]))
+    last = _division_distances_from_end(float(edges[-1] - edges[-2]), mesh.order, float(wave_numbers[1]))
     if not len(first) and not len(last):
         return mesh
     return ArmMesh((0.0, *first, *mesh.edges[1:-1], *(1 - last[::-1]), 1.0), mesh.order)
 
 
-def _end_element_divisions(length: float, order: int, wave_number: float) -> Array:
-    """Distances from an end of the arm, increasing, at which the element of this end is divided, (n,): none
+def _division_distances_from_end(length: float, order: int, wave_number: float) -> Array:
+    """Distances from an end of the arm, increasing, at which the element at this end is divided, (n,); empty
     if elements of the order `order` and the length `length` represent the wave number."""
     ratio = ARM_RESOLUTION_SETTINGS.graded_element_length_ratio
     wave_count = wave_number * length / (RESOLUTION_SETTINGS.max_wave_number_per_node * order)
@@ -93,7 +94,8 @@ def _end_element_divisions(length: float, order: int, wave_number: float) -> Arr
 
 def arm_elements(rod: Rod, wave_number: float, accuracy: float, max_order: int | None = None) -> Elements:
     """Elements that resolve a field along an arm with the mean wave number `wave_number`, in 1/L, to a
-    relative accuracy. max_order: of an element, `RESOLUTION_SETTINGS.max_order` by default."""
+    relative accuracy. max_order: maximum order of an element before `profile_order_increase`, by default
+    `RESOLUTION_SETTINGS.max_order`."""
     wave_numbers = wave_number * _wave_number_over_mean(rod)
     return _elements_for_wave(
         rod,
@@ -118,7 +120,7 @@ def _elements_for_wave(
 ) -> Elements:
     """Elements that resolve a wave along an arm to a relative accuracy. phases: phase of the wave over each
     sample interval, |q| times length, (n,). max_order: maximum order of an element without `order_increase`.
-    order_increase: increase of the order that uniform pieces need."""
+    order_increase: number added to the order that uniform pieces need."""
     intervals = len(rod.material.breaks) - 1
     interval_phases = list_of(phases.reshape(intervals, -1).sum(axis=1))
     min_counts = tuple(required_element_count(phase, accuracy, max_order) for phase in interval_phases)
@@ -134,8 +136,8 @@ def _elements_for_wave(
 def _edges_and_counts(
     material: RodMaterial, taper: float, min_counts: tuple[int, ...]
 ) -> tuple[tuple[float, ...], tuple[int, ...]]:
-    """Returns (edges, counts): edges of the elements of an arm, increasing, and the number of elements of
-    each interval between breaks: at least `min_counts`, and as many as `max_element_radius_ratio`
+    """Returns (edges, counts). edges: edges of the elements of an arm, increasing. counts: number of elements
+    of each interval between breaks, at least `min_counts` and as many as `max_element_radius_ratio`
     requires."""
     edges = [0.0]
     counts = []
@@ -169,7 +171,6 @@ def _graded_edges(taper: float, start: float, stop: float, element_count: int) -
     the radii at both ends."""
     if element_count == 1:
         return [float(stop)]
-    # The break itself, unrounded: edges are compared exactly with the positions of jumps.
     if taper == 1:
         edges: Array = np.linspace(start, stop, element_count + 1)[1:]
     else:

@@ -37,7 +37,7 @@ class DenseEigenproblem:
         return displacements_of_eigenvectors(vectors, self.displacement_factors)
 
     def fields_at(self, X: Complex, Z: Complex, points: Array) -> Complex:
-        """Fields of k modes at points, (points,): (6, k, points).
+        """Six fields, (6, k, points), of k modes at `points`, (points,), in [0, 1].
 
         X, Z: right and left eigenvectors, (unknowns, k) each. The fields are Y and Theta of X, its strains h2
         = Y' - nu Theta and Pi = Theta', and Y+ and Theta+ of Z. h2 = c2 s is exactly 0 in an unshearable rod.

@@ -165,7 +165,8 @@ def _derivatives_beside_jump(law: Law, nu: Array, c1: Array, c3: Array) -> Deriv
 
 
 def inverse_function_derivatives(derivatives: DerivativeTensors) -> DerivativeTensors:
-    """Derivatives of the inverse function g of f, by differentiating f(g(y)) = y. derivatives: of f."""
+    """Derivatives of the inverse function g of f, by differentiating f(g(y)) = y. derivatives: derivatives of
+    f."""
     f1, f2, f3 = derivatives
     g1 = np.linalg.inv(f1)
     g2 = -np.einsum("...ai,...ijk,...jb,...kc->...abc", g1, f2, g1, g1)

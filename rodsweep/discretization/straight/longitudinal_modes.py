@@ -38,8 +38,9 @@ class LongitudinalModeSettings:
     """Increase of the elements' order in each refinement; eigenvalues of successive orders are compared."""
     max_order: int = 60
     """Maximum order of an element; the error at this order is returned even if it is large."""
-    converged_difference: float = 1e-13
-    """The order is no longer increased if the eigenvalues of two orders differ relatively by at most this."""
+    converged_relative_difference: float = 1e-13
+    """The order is no longer increased if the relative difference of two orders' eigenvalues is at most
+    this."""
     relative_rounding_error: float = 5e-14
     """Relative rounding error of an eigenvalue; the error estimate is a difference of orders plus this."""
     extra_point_count: int = 6
@@ -49,7 +50,7 @@ class LongitudinalModeSettings:
 LONGITUDINAL_MODE_SETTINGS = LongitudinalModeSettings()
 
 
-def longitudinal_modes(rod: Rod, mode_count: int) -> tuple[Array, Array]:
+def longitudinal_eigenvalues_and_errors(rod: Rod, mode_count: int) -> tuple[Array, Array]:
     """Returns (w, relative errors) of the leading longitudinal eigenvalues w, in 1/tau2, (modes,) each.
     Raises ValueError for an inextensible rod."""
     settings = LONGITUDINAL_MODE_SETTINGS
@@ -65,7 +66,7 @@ def longitudinal_modes(rod: Rod, mode_count: int) -> tuple[Array, Array]:
         # order.
         finer_eigenvalues = _leading_eigenvalues(rod, mesh, order, mode_count)
         error = np.abs(finer_eigenvalues / eigenvalues - 1)
-        if error.max() <= settings.converged_difference or order >= settings.max_order:
+        if error.max() <= settings.converged_relative_difference or order >= settings.max_order:
             return finer_eigenvalues, error + settings.relative_rounding_error
         eigenvalues = finer_eigenvalues
 

@@ -93,7 +93,7 @@ class MixedForm(RodOnMesh):
         forces = coad(broadcast_to_field(E, S), self._linearised_stress(S)) + coad(rest_strain, dE)
         forces = forces + coad(self._compliance_times_stress(S), broadcast_to_field(Sigma, S))
         return self.layout.state(
-            W * ad(broadcast_to_field(E, V), V), W * forces + self._weighted_derivative(dE)
+            W * ad(broadcast_to_field(E, V), V), W * forces + self._weights_times_derivative(dE)
         )
 
     @cached_property
@@ -114,7 +114,7 @@ class MixedForm(RodOnMesh):
         each."""
         return self.stresses(X), self.layout.velocities(X)
 
-    def bilinear_form(self, X: Values, Y: Values) -> Values:
+    def bilinear_map(self, X: Values, Y: Values) -> Values:
         """The symmetric bilinear form B(X, Y) of the quadratic terms; X, Y and result: (..., unknowns)."""
         S, U = self.stresses_and_velocities(X)
         T, V = self.stresses_and_velocities(Y)
@@ -127,11 +127,11 @@ class MixedForm(RodOnMesh):
             forces = (
                 forces
                 + W * coad(broadcast_to_field(self.nodal_rod.straight_state_strain, S), second_derivative)
-                + self._weighted_derivative(second_derivative)
+                + self._weights_times_derivative(second_derivative)
             )
         return self.layout.state(W * (ad(CS, V) + ad(CT, U)), forces)
 
-    def trilinear_form(self, X: Values, Y: Values, Z: Values) -> Values:
+    def trilinear_map(self, X: Values, Y: Values, Z: Values) -> Values:
         """The symmetric trilinear form C(X, Y, Z) of the cubic terms, (..., unknowns); 0 for a linear law."""
         S, T, R = (self.stresses(state) for state in (X, Y, Z))
         W = self.mesh.quadrature_weights
@@ -139,7 +139,7 @@ class MixedForm(RodOnMesh):
         third_derivative = law.third_derivative_form(S, T, R)
         forces = W * coad(
             broadcast_to_field(self.nodal_rod.straight_state_strain, S), third_derivative
-        ) + self._weighted_derivative(third_derivative)
+        ) + self._weights_times_derivative(third_derivative)
         for first, second, third_factor in ((S, T, R), (T, R, S), (R, S, T)):
             forces = forces + W * coad(
                 self._compliance_times_stress(first), law.second_derivative_form(second, third_factor)
@@ -154,7 +154,7 @@ class MixedForm(RodOnMesh):
         """The law s(S) to first order in S, at all nodes, (3, ..., nodes + 1)."""
         return broadcast_to_field(self.law_derivatives.law_tangent, S) * S
 
-    def _weighted_derivative(self, field: Values) -> Values:
+    def _weights_times_derivative(self, field: Values) -> Values:
         """W D times a field at all nodes, both (3, ..., nodes + 1)."""
         return field @ -self.mesh.node_matrices.weak_derivative_matrix
 
@@ -167,7 +167,8 @@ def axial_field(values: Array) -> Array:
 
 
 def integral_to_tip(mesh: Mesh, values: Array) -> Array:
-    """Integral of a field from each node to the tip, (nodes + 1,). values: at all nodes, (nodes + 1,)."""
+    """Integral of a field from each node to the tip, (nodes + 1,), for a mesh without node spacing ratios.
+    values: values of the field at all nodes, (nodes + 1,)."""
     total = np.zeros(mesh.node_count + 1)
     for nodes, order, length in zip(mesh.node_ranges, mesh.orders, mesh.lengths, strict=True):
         ends = shape_integration_matrices(order).nodal_integrals_to_nodes

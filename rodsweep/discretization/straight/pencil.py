@@ -82,7 +82,7 @@ class Pencil(Elements):
 
     def constant_matrix_factors(self, rod: Rod) -> Array:
         """Factors by which the six constant matrices are multiplied for the rod `rod`, (6,)."""
-        t = angle_weight(rod.rotational_drag)
+        t = angle_weight(rod.base_rotational_drag)
         return np.array([1.0, 1 / t**2, rod.F / t, rod.g / t, rod.nu / t, rod.c2])
 
     def stiffness_entries(self, rod: Rod) -> Array:
@@ -106,20 +106,20 @@ class Pencil(Elements):
         B = np.zeros(self.unknown_count)
         B[: self.node_count] = 1.0
         B[self.node_count : 2 * self.node_count] = (
-            rod.rotational_drag / angle_weight(rod.rotational_drag) ** 2
+            rod.base_rotational_drag / angle_weight(rod.base_rotational_drag) ** 2
         )
         return B
 
     def displacement_factors(self, rod: Rod) -> Array:
         """Factors from the unknowns of a rod to y and theta at the nodes, clamp excluded, (2, nodes)."""
         inverse_root = 1 / np.sqrt(self.nodal_masses)
-        return np.stack([inverse_root, inverse_root / angle_weight(rod.rotational_drag)])
+        return np.stack([inverse_root, inverse_root / angle_weight(rod.base_rotational_drag)])
 
 
 def finite_eigenvalue_count(rod: Rod, node_count: int) -> int:
     """Number of finite eigenvalues of a rod on a mesh with `node_count` nodes, without the clamp. Every node
     contributes one eigenvalue for y, and one for theta if the rod has shear and rotational drag."""
-    return node_count if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * node_count
+    return node_count if rod.c2 == 0 or rod.base_rotational_drag == 0 else 2 * node_count
 
 
 def displacements_of_eigenvectors(vectors: Complex, displacement_factors: Array) -> tuple[NDArray, NDArray]:
@@ -151,8 +151,8 @@ def factors_to_unit_tip_displacement(y: Complex, theta: Complex) -> Complex:
 
 
 def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
-    """Shear force s of k eigenvectors, (unknowns, k), at points, (points,), interpolated from the Gauss
-    nodes: (points, k)."""
+    """Shear force s, (points, k), of k eigenvectors, (unknowns, k), at `points`, (points,), in [0, 1],
+    interpolated from the Gauss nodes."""
     nodes, weights = gauss_legendre_rule(mesh.order)
     mass = (weights * mesh.lengths[:, None] / 2).ravel() * PENCIL_NORM_SETTINGS.shear_weight**2
     values = vectors[2 * mesh.node_count :] / np.sqrt(mass)[:, None]
@@ -164,8 +164,9 @@ def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
 
 
 def value_and_slope_matrices(mesh: Elements, points: Array) -> tuple[Array, Array]:
-    """Matrices (n, nodes + 1) from values of a field at all nodes to values and to derivatives d/du at
-    `points`, (n,), in [0, 1]; all elements of `mesh` have the order of the mesh."""
+    """Returns (value matrix, slope matrix), (n, nodes + 1) each: matrices from values of a field at all nodes
+    to values, and to derivatives d/du, at `points`, (n,), in [0, 1]. All elements of `mesh` have the order of
+    the mesh."""
     nodes, _ = gauss_lobatto_rule(mesh.order)
     derivative = _lobatto_differentiation_matrix(mesh.order)
     value = np.zeros((len(points), mesh.node_count + 1))

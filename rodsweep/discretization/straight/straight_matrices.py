@@ -21,7 +21,8 @@ from ..state_layout import SE2_DIMENSION
 from .mixed_form import MixedForm
 
 LONGITUDINAL_COMPONENTS = (0,)
-"""Indices of the components of stresses and velocities in se(2) that reflection in the rod's axis keeps."""
+"""Indices of the components of stresses and velocities in se(2) that reflection in the rod's axis does not
+change."""
 TRANSVERSE_COMPONENTS = (1, 2)
 """Indices of the components of stresses and velocities in se(2) that change their sign under reflection in
 the rod's axis."""
@@ -76,7 +77,7 @@ class StraightMatrices:
     components: tuple[int, ...]
 
     @cached_property
-    def state_indices(self) -> NDArray[np.int_]:
+    def component_indices_in_state(self) -> NDArray[np.int_]:
         """Indices in a state of the unknowns of `components`, (n,)."""
         mask = np.zeros((SE2_DIMENSION, self.form.mesh.node_count + 1))
         mask[list(self.components)] = 1
@@ -88,7 +89,8 @@ class StraightMatrices:
 
     @cached_property
     def A(self) -> csc_array:
-        """Rows and columns of the matrix A for the n unknowns of `components`, (n, n)."""
+        """The part of the matrix A, (n, n), whose rows and columns belong to the n unknowns of
+        `components`."""
         form = self.form
         own = list(self.components)
         pattern = self._sparsity_pattern
@@ -110,20 +112,23 @@ class StraightMatrices:
     @cached_property
     def M(self) -> Array:
         """Diagonal of M for the unknowns of `components`, (n,)."""
-        return self.form.M[self.state_indices]
+        return self.form.M[self.component_indices_in_state]
 
     def times_A(self, x: Values) -> Values:
         """Product A x, (unknowns,)."""
-        return self._scatter(self.A @ x[self.state_indices])
+        return self._state_with_component_values(self.A @ x[self.component_indices_in_state])
 
     def times_M(self, x: Values) -> Values:
         """Product M x, (unknowns,)."""
-        return self._scatter(self.M * x[self.state_indices])
+        return self._state_with_component_values(self.M * x[self.component_indices_in_state])
 
     def A_product_magnitude(self, p: Values, q: Values) -> float:
         """The number |p| |A| |q|, with the modulus of every entry. The rounding error of p A q is about
         machine epsilon times this number. p, q: (unknowns,)."""
-        return float(np.abs(p[self.state_indices]) @ (abs(self.A) @ np.abs(q[self.state_indices])))
+        return float(
+            np.abs(p[self.component_indices_in_state])
+            @ (abs(self.A) @ np.abs(q[self.component_indices_in_state]))
+        )
 
     def lu_factors(self, shift: complex) -> "StraightFactors":
         """LU factorisation of A - shift M."""
@@ -133,17 +138,17 @@ class StraightMatrices:
         K = csc_array((values, pattern.indices, pattern.indptr), shape=self.A.shape)
         return StraightFactors(self, splu(K))
 
-    def _scatter(self, values: Values) -> Values:
+    def _state_with_component_values(self, values: Values) -> Values:
         """A state, (unknowns,), with `values`, (n,), in the unknowns of `components`, 0 in all others."""
         x = np.zeros(self.form.unknown_count, values.dtype)
-        x[self.state_indices] = values
+        x[self.component_indices_in_state] = values
         return x
 
 
 @dataclass(frozen=True, eq=False)
 class StraightFactors:
-    """LU factorisation of the matrix K = A - shift M. lu: of the rows and columns of K for the n unknowns of
-    `matrices.components`, (n, n)."""
+    """LU factorisation of the matrix K = A - shift M. lu: factorisation of the part of K, (n, n), whose rows
+    and columns belong to the n unknowns of `matrices.components`."""
 
     matrices: StraightMatrices
     lu: SuperLU
@@ -151,5 +156,5 @@ class StraightFactors:
     def solve(self, b: Values, adjoint: bool = False) -> Complex:
         """The solution x, (unknowns,), of K x = b or, if `adjoint`, of K^H x = b; b: (unknowns,)."""
         matrices = self.matrices
-        right_side = b[matrices.state_indices].astype(complex)
-        return matrices._scatter(self.lu.solve(right_side, "H" if adjoint else "N"))
+        right_side = b[matrices.component_indices_in_state].astype(complex)
+        return matrices._state_with_component_values(self.lu.solve(right_side, "H" if adjoint else "N"))

@@ -1,9 +1,9 @@
 """The tip layer of an arm without rotational drag, in which the angle theta follows y instantaneously.
 
-d = theta - theta+, the difference between the angle and the adjoint angle (`rodsweep.model.adjoint`), solves
-d' = c3 m, m' = q d with q = g nu/c2 and d(0) = 0; this module computes T = d(1)/m(1). With test functions b
-the weak form is int b' d'/c3 + b q d = b(1) m(1). T is the energy of d for m(1) = 1, so the error of T is the
-square of the error of d.
+d = theta - theta+, the difference between the angle and the adjoint angle
+(`rodsweep.model.adjoint_tip_conditions`), solves d' = c3 m, m' = q d with q = g nu/c2 and d(0) = 0; this
+module computes T = d(1)/m(1). With test functions b the weak form is int b' d'/c3 + b q d = b(1) m(1). T is
+the energy of d for m(1) = 1, so the error of T is the square of the error of d.
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from math import ceil, sqrt
 import numpy as np
 
 from ...arrays import Array
-from ...model.adjoint import tip_layer_factor
+from ...model.adjoint_tip_conditions import tip_layer_factor
 from ...model.rod import Rod
 from ..elements.basis import differentiation_matrix, lagrange_interpolation_matrix
 from ..elements.quadrature import gauss_legendre_rule, gauss_lobatto_rule
@@ -41,11 +41,11 @@ error estimate. Order 8 would cause an error of 4e-11 in a numerical abscissa.""
 def tip_angle_moment_ratio(rod: Rod) -> float:
     """T = d(1)/m(1) at the tip of a rod without rotational drag; 0 for a rod with rotational drag or without
     shear. d: difference of the angle and the adjoint angle. m = d'/c3: bending moment of d."""
-    if rod.rotational_drag > 0 or rod.c2 == 0:
+    if rod.base_rotational_drag > 0 or rod.c2 == 0:
         return 0.0
     if rod.is_uniform_and_linear:
         return tip_layer_factor(rod)
-    edges = _element_edges(rod)
+    edges = _edges_with_short_tip_elements(rod)
     x, _ = gauss_lobatto_rule(TIP_LAYER_ORDER)
     # Two points more than the order, for coefficients that vary within an element.
     points, weights = gauss_legendre_rule(TIP_LAYER_ORDER + 2)
@@ -78,7 +78,7 @@ def _angle_moment_ratio_at_right_end(K: Array, left_ratio: float) -> float:
     return float(np.linalg.solve(K, load)[-1])
 
 
-def _element_edges(rod: Rod) -> Array:
+def _edges_with_short_tip_elements(rod: Rod) -> Array:
     """Increasing edges of elements: breaks of the arm, edges of equal elements and, for a thin layer, edges
     of shorter elements towards the tip."""
     breaks = rod.material.breaks

@@ -19,7 +19,8 @@ AnyMesh = Resolution | ArmMesh
 
 
 def mesh_for(rod: Rod, wave_number: float, accuracy: float) -> AnyMesh:
-    """The mesh that resolves fields of a wave number, in 1/L, on a rod to the relative `accuracy`."""
+    """The mesh on which a rod's fields of the wave number `wave_number`, in 1/L, have the relative
+    `accuracy`."""
     if rod.is_uniform_and_linear:
         return resolution_for(wave_number, accuracy)
     elements = arm_elements(rod, wave_number, accuracy)

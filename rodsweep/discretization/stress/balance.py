@@ -1,8 +1,8 @@
 """The compiled balance of the nonlinear rod on a mesh with stresses as unknowns.
 
 Sec. III, second formulation, in the plane or in space, according to the argument `g`, an algebra of
-`model.algebra`. The unknowns S are the stresses of a linear rod with the same strain, minus the stresses of
-the straight rod, at every node except the tip, where S = 0. With the compliances C and the drags Gamma of
+`model.lie_algebra`. The unknowns S are the stresses of a linear rod with the same strain, minus the stresses
+of the straight rod, at every node except the tip, where S = 0. With the compliances C and the drags Gamma of
 each node, the assembled differentiation matrix D, the weights W of the nodes, and the strain E0 of the
 straight rod under its force,
 
@@ -15,9 +15,9 @@ node where the material jumps, E is the mean strain of both sides, and s(S) is t
 both sides (`rodsweep.model.material.jump`).
 
 A compliance may be 0, since no formula divides by a compliance; the corresponding stress then has no time
-derivative. At the tip G is the reaction r, and -r is the velocity of the tip: -r converges twice as fast as
-V(1), and dU/dt = -Sigma(1) r - <Gamma V, V> holds to rounding. The condition for the stress of the tip is
-essential, the clamp V(0) = 0 is natural.
+derivative. The tip condition S = 0 is essential; G at the tip is its reaction r, and -r is the velocity of
+the tip: -r converges twice as fast as V(1), and dU/dt = -Sigma(1) r - <Gamma V, V> holds to rounding. The
+clamp V(0) = 0 is natural.
 
 V is eliminated, except components with a drag so small that division by the drag costs digits. These are
 unknowns at all nodes, tip included, with the equations W (D*_E Sigma - Gamma V) = 0. A state is flat: S1 at
@@ -31,9 +31,9 @@ dimension of g. See also `rodsweep.model.balance` (without a mesh), `mixed_form`
 import numpy as np
 
 from ...arrays import Array
-from ...model.algebra import LieAlgebra
 from ...model.compiled.compilation import compiled
 from ...model.compiled.unrolling import UnrolledOverAlgebra
+from ...model.lie_algebra import LieAlgebra
 from ...model.material.jump import stress_at_jump, stress_parameter_derivative_at_jump
 from ...model.material.stress_strain import (
     LINEAR_LAW_NUMBER,
@@ -125,7 +125,9 @@ def add_weak_derivative(g: LieAlgebra, V: Array, G: Array, m: NodeMatrices) -> N
 
 
 @UnrolledOverAlgebra
-def write_balance(g: LieAlgebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices) -> None:
+def write_velocities_and_rates(
+    g: LieAlgebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices
+) -> None:
     """Writes the velocities V and the strain rates G = W C dS/dt of a state x, (unknowns,), at all nodes into
     V and G, (d, nodes + 1) each. Unknown components of V are copied from x."""
     size = len(m.quadrature_weights)

@@ -30,8 +30,9 @@ class VelocityEliminationSettings:
     unknown. Newton's method for the form without v1 converges only from starts whose relative error is below
     the axial drag, because an error of the axial force is divided by the drag: no cycle was found from
     motions at a drag of 1e-5, and none near a Hopf point at 1e-10. At drags from 1e-4 to 1e-3 the motions of
-    5 of 15 rods had to be integrated again on finer meshes, which took 7 to 22 times as long, and another rod
-    had no cycle; at drags from 3e-3 to 1e-2 none of 13. The form with v1 takes up to twice as long."""
+    5 of 15 rods had to be integrated again on finer meshes, which took 7 to 22 times as long, and no cycle
+    was found for another rod; none of 13 rods with drags from 3e-3 to 1e-2 had these problems. The form with
+    v1 takes up to twice as long."""
 
 
 VELOCITY_ELIMINATION_SETTINGS = VelocityEliminationSettings()
@@ -51,10 +52,10 @@ def has_small_rotational_drag(rod: Rod) -> bool:
 class StressForm(RodOnMesh):
     """One nonlinear rod on one mesh with stresses as unknowns.
 
-    A state x has the shape (..., unknowns). It contains n1 + F and n2 in k3/L^2, and m3 in k3/L, of a linear
-    rod with the same strain, at every node except the tip, where all three stresses are 0; then, for small
-    gamma1, the axial velocity v1 in L/tau2, and for small gamma3 the angular velocity Omega in 1/tau2, at all
-    nodes.
+    A state x has the shape (..., unknowns). It contains the stresses n1 + F and n2 in k3/L^2, and m3 in k3/L,
+    of a linear rod with the same strain, at every node except the tip, where all three stresses are 0; then,
+    for small gamma1, the axial velocity v1 in L/tau2, and for small gamma3 the angular velocity Omega in
+    1/tau2, at all nodes.
     """
 
     is_omega_always_unknown: bool = False
@@ -111,7 +112,8 @@ class StressForm(RodOnMesh):
         return self.mass_diagonal_of(self.nodal_rod)
 
     def mass_diagonal_of(self, rod: NodalRod | NodalRodDerivative) -> Array:
-        """`mass_diagonal` with the compliances of `rod`, (unknowns,). rod: another rod, or a derivative."""
+        """`mass_diagonal` with the compliances of `rod`, (unknowns,). rod: another rod, or the derivative of
+        a rod with respect to a parameter."""
         weighted = rod.compliance * self.mesh.quadrature_weights
         return self.layout.state(weighted, np.zeros(weighted.shape))
 

@@ -16,9 +16,9 @@ becomes J - P + P T.
 import numpy as np
 
 from ...arrays import Array
-from ...model.algebra import LieAlgebra
 from ...model.compiled.compilation import compiled
 from ...model.compiled.unrolling import UnrolledOverAlgebra
+from ...model.lie_algebra import LieAlgebra
 from ...model.material.jump import tangent_at_jump
 from ...model.material.stress_strain import LINEAR_LAW_NUMBER, LocalSection, stress_tangent
 from ..elements.mesh import NodeMatrices
@@ -48,12 +48,12 @@ def write_jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count re
         # With compliances of 0 the strain is fixed, so the derivative is P.
         _write_linear_law_jacobian(g, (E, S, V), P, tip_P, np.zeros(c.compliance.shape), c, m)
         # Unknown velocities do not depend on the law, so their columns of P are not used.
-        _add_law_tangent(x, J, P, c)
-        _add_law_tangent(x, tip, tip_P, c)
+        _add_law_tangent_minus_identity(x, J, P, c)
+        _add_law_tangent_minus_identity(x, tip, tip_P, c)
 
 
 @compiled
-def _add_law_tangent(x: Array, J: Array, P: Array, c: NodalRod) -> None:
+def _add_law_tangent_minus_identity(x: Array, J: Array, P: Array, c: NodalRod) -> None:
     """Adds P (T - 1) to J; both (rows, unknowns). T: tangent of the law of the rod `c` at the state x."""
     n = c.compliance.shape[1] - 1
     k = 0

@@ -1,7 +1,8 @@
 """Compiled position and velocity of the tip from strains and strain rates.
 
-theta(1) = int Pi, r(1) = int R(theta) (h1, h2), where R(theta) is the rotation by theta, and the time
-derivatives of both integrals. Positions of all nodes are computed in `elements.mesh`.
+The tip has the angle theta(1) = int Pi and the position r(1) = int R(theta) (h1, h2), where R(theta) is the
+rotation by theta; its velocity is the time derivative of both integrals. Positions of all nodes are computed
+in `elements.mesh`.
 """
 
 from functools import lru_cache
@@ -17,15 +18,17 @@ from ..nodal_rod import IntegerArray
 
 
 class TipMatrices(NamedTuple):
-    """Matrices that integrate strains to the position of the tip, each element as [0, 1]. m: number of nodes
-    of all elements, one element after the other; g: number of Gauss points of every element.
+    """Matrices that integrate strains to the position of the tip, with each element mapped to [0, 1]. m:
+    number of nodes of all elements, where a node between two elements counts twice; g: number of Gauss points
+    of every element.
 
     interpolation_to_gauss_points: interpolation from the nodes of an element to its Gauss points, (m, g).
     nodal_integrals_to_gauss_points: integrals of nodal polynomials from 0 to the Gauss points, (m, g).
     gauss_weights: Gauss weights of each element, (elements, g). nodal_polynomial_integrals: integrals of
     nodal polynomials over the element, (m,). element_lengths: lengths of all elements, (elements,).
     element_node_indices: index of the node of the mesh at each node of every element, (m,).
-    element_start_indices: index in m of the first node of each element, then m, (elements + 1,)."""
+    element_start_indices: index, among the m nodes, of the first node of each element, then m, (elements +
+    1,)."""
 
     interpolation_to_gauss_points: Array
     nodal_integrals_to_gauss_points: Array

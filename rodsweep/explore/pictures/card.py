@@ -19,7 +19,7 @@ TICK_COUNT = 5
 """Desired number of tick labels along the lower axis."""
 MIN_TICK_POWER_WITH_EXPONENT = 7
 """Tick labels below 10 to this power are written without an exponent."""
-BLANK_TITLE = "\u00a0"
+BLANK_TITLE_LINE = "\u00a0"
 """Blank line of a title (a no-break space). Bokeh never shows the title of a figure first drawn with an empty
 title."""
 MAX_TITLE_CHARACTERS = 46
@@ -125,7 +125,7 @@ class Card:
     def set_title(self, text: str) -> None:
         """Sets the title of the figure, wrapped to lines of at most MAX_TITLE_CHARACTERS characters."""
         lines = wrap(text, MAX_TITLE_CHARACTERS)
-        self.figure.title.text = "\n".join(lines + [BLANK_TITLE] * (self.title_lines - len(lines)))
+        self.figure.title.text = "\n".join(lines + [BLANK_TITLE_LINE] * (self.title_lines - len(lines)))
 
     def set_axes(self, x: AxisLimits, y: AxisLimits, labels: tuple[str, str] | None = None) -> None:
         """Sets the limits of the axes, which are also the limits that the reset button of the figure

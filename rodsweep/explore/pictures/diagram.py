@@ -14,7 +14,7 @@ from ...post.figures.phase_diagram import CURVE_END_CRUSHING_RATIO
 from ...post.figures.stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_classes
 from ...wording import counted
 from ..slider_scales import SliderScale
-from ..solving.diagram_curves_and_counts import DiagramCurve
+from ..solving.diagram_curves_and_unstable_counts import DiagramCurve
 from ..solving.diagrams import CRUSHED_UNSTABLE_COUNT, UNKNOWN_UNSTABLE_COUNT
 from . import card
 
@@ -25,7 +25,7 @@ MIN_LOG_TICKER_RATIO = 100
 """On a logarithmic axis whose ends have a smaller ratio, Bokeh's ticker places ticks at equal distances, and
 none in the lower part."""
 TICK_MANTISSAS = np.array([1.0, 2.0, 5.0])
-"""Mantissas of the ticks of such an axis."""
+"""Mantissas of the ticks of an axis whose ends have a ratio below MIN_LOG_TICKER_RATIO."""
 
 
 class UnstableCountGrid(NamedTuple):
@@ -38,8 +38,9 @@ class UnstableCountGrid(NamedTuple):
 
 
 def unstable_count_grid(answer: dict[str, Any]) -> UnstableCountGrid | None:
-    """Regions of the answer `answer` to the request "diagram", in its units. None if the answer has no curve
-    of Hopf points, or fewer than two finite positive values of the second parameter."""
+    """Numbers of unstable modes on a fine grid, from the answer `answer` to the request "diagram", in the
+    units of the answer. None if the answer has no curve of Hopf points, fewer than two values of the second
+    parameter, or a value that is not finite and positive."""
     x = answer["x"]
     y = answer["y"]
     hopf_curves = [curve for curve in answer["curves"] if curve.kind == "hopf"]
@@ -132,9 +133,9 @@ def merged_cells_of_rows(edges: Array, row_edges: Array, counts: Array) -> list[
     return cells
 
 
-def stability_colour(unstable_count: int) -> tuple[str, float]:
-    """(colour, opacity) for a number of unstable modes, or for CRUSHED_UNSTABLE_COUNT or
-    UNKNOWN_UNSTABLE_COUNT."""
+def stability_colour_and_opacity(unstable_count: int) -> tuple[str, float]:
+    """Returns (colour, opacity) of a cell. unstable_count: number of unstable modes, or
+    CRUSHED_UNSTABLE_COUNT, or UNKNOWN_UNSTABLE_COUNT."""
     if unstable_count in (CRUSHED_UNSTABLE_COUNT, UNKNOWN_UNSTABLE_COUNT):
         return card.NEUTRAL_COLOUR, 0.55 if unstable_count == CRUSHED_UNSTABLE_COUNT else 0.25
     if unstable_count == 0:
@@ -187,8 +188,8 @@ class DiagramPicture:
         return len(self.cell_source.data["left"]) > 0
 
     def show(self, answer: dict[str, Any], load: SliderScale, row_scale: SliderScale) -> None:
-        """Draws the answer `answer` to the request "diagram". load, row_scale: scales of the controls whose
-        units the axes have."""
+        """Draws the answer `answer` to the request "diagram". load, row_scale: scales of the controls of the
+        load and of the second parameter, for units and labels of the axes."""
         x = answer["x"] * load.factor_from_si
         y = answer["y"] * row_scale.factor_from_si
         regions = unstable_count_grid(answer)
@@ -198,7 +199,7 @@ class DiagramPicture:
             edges = (regions.column_edges * load.factor_from_si, regions.row_edges * row_scale.factor_from_si)
             grid = merged_cells_of_rows(*edges, regions.unstable_counts)
         data = {name: [getattr(cell, name) for cell in grid] for name in DiagramCell._fields}
-        shades = [stability_colour(cell.unstable_count) for cell in grid]
+        shades = [stability_colour_and_opacity(cell.unstable_count) for cell in grid]
         data["words"] = [unstable_count_words(cell.unstable_count) for cell in grid]
         data |= {"colour": [colour for colour, _ in shades], "alpha": [alpha for _, alpha in shades]}
         self.cell_source.data = data
@@ -226,7 +227,7 @@ class DiagramPicture:
 
 
 def log_axis_ticker(low: float, high: float) -> Ticker:
-    """The ticker of a logarithmic axis from `low` to `high`, which has ticks in all its parts."""
+    """A ticker that places ticks in all parts of a logarithmic axis from `low` to `high`."""
     if not 0 < low < high < MIN_LOG_TICKER_RATIO * low:
         return LogTicker()
     exponents = np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)))

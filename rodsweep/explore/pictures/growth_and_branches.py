@@ -9,14 +9,14 @@ from bokeh.models import HoverTool, Span
 from ...post.summary.thresholds import oscillation_end_index
 from ..slider_scales import PictureAxis
 from . import card
-from .numbers_table import SI_NAME_BY_VARIABLE
+from .numbers_table import SI_VARIABLE_BY_DIMENSIONLESS_NAME
 
-THRESHOLDS_IN_TITLE = ("F_onset", "F_hopf", "F_restabilization")
+TITLE_THRESHOLD_VARIABLES = ("F_onset", "F_hopf", "F_restabilization")
 """Variables of the thresholds in the title."""
 ROD_THRESHOLD_FORMATS = ("F* = {:.7g}", "F** = {:.7g}", "stable from {:.7g}")
-"""Formats of `THRESHOLDS_IN_TITLE` in the title, for a rod (load F)."""
+"""Formats of `TITLE_THRESHOLD_VARIABLES` in the title, for a rod (load F)."""
 ARM_THRESHOLD_FORMATS = ("oscillates from {:.5g} kPa", "flutters from {:.5g} kPa", "stable from {:.5g} kPa")
-"""Formats of `THRESHOLDS_IN_TITLE` in the title, for an arm (load: pressure)."""
+"""Formats of `TITLE_THRESHOLD_VARIABLES` in the title, for an arm (load: pressure)."""
 THRESHOLD_LINE_LOOKS = {
     "onset": ("oscillates from F*", card.NEUTRAL_COLOUR),
     "hopf": ("flutters, Hopf point F**", card.UNSTABLE_COLOUR),
@@ -62,7 +62,9 @@ class GrowthRatePicture:
     def show_thresholds(self, answer: dict[str, Any], load: PictureAxis) -> None:
         """Draws the thresholds of the answer `answer`, and writes the first threshold of each kind into the
         title."""
-        frequencies = answer.get(SI_NAME_BY_VARIABLE["crossing_frequency"], answer["crossing_frequency"])
+        frequencies = answer.get(
+            SI_VARIABLE_BY_DIMENSIONLESS_NAME["crossing_frequency"], answer["crossing_frequency"]
+        )
         rows = [
             (F * load.factor_from_dimensionless, *THRESHOLD_LINE_LOOKS[kind], frequency)
             for F, kind, frequency in zip(answer["crossing_F"], answer["kinds"], frequencies, strict=True)
@@ -75,11 +77,11 @@ class GrowthRatePicture:
 
 def threshold_title(answer: dict[str, Any], load: PictureAxis) -> str:
     """Title with the first threshold of each kind in the answer `answer`, in the unit of the axis `load`."""
-    is_arm = SI_NAME_BY_VARIABLE["F_hopf"] in answer
+    is_arm = SI_VARIABLE_BY_DIMENSIONLESS_NAME["F_hopf"] in answer
     formats = ARM_THRESHOLD_FORMATS if is_arm else ROD_THRESHOLD_FORMATS
     texts = [
         value_format.format(load.factor_from_dimensionless * float(answer[name]))
-        for value_format, name in zip(formats, THRESHOLDS_IN_TITLE, strict=True)
+        for value_format, name in zip(formats, TITLE_THRESHOLD_VARIABLES, strict=True)
         if np.isfinite(answer[name])
     ]
     if is_arm and (end := oscillation_end_index(answer["kinds"])) is not None:
@@ -97,7 +99,7 @@ STABILITY_LOOKS = {
 """(legend entry, colour, line style) of a branch, by stability: 1 stable, 0 unstable, -1 unknown."""
 EMPTY_CYCLE_COLUMNS = {"F": np.zeros(0), "y": np.zeros(0), "stable": np.zeros(0, dtype=int)}
 """Columns without values, for an answer that has branches but no separately solved cycles."""
-LOAD_AXIS_MARGIN = 0.03
+LOAD_AXIS_MARGIN_FRACTION = 0.03
 """Margin left and right of the dots of separately solved cycles, as a fraction of their range of loads.
 Without a margin the outermost dots would be cut off."""
 
@@ -144,7 +146,7 @@ class BranchPicture:
         if pieces or len(cycles["F"]):
             lines = [*(piece[:2] for piece in pieces), (cycles["F"], cycles["y"])]
             all_F, all_y = (np.concatenate([line[i] for line in lines]) for i in range(2))
-            margin = LOAD_AXIS_MARGIN if len(cycles["F"]) else 0.0
+            margin = LOAD_AXIS_MARGIN_FRACTION if len(cycles["F"]) else 0.0
             limits = (
                 card.axis_limits(all_F * load.factor_from_dimensionless, margin),
                 card.axis_limits(all_y * length.factor_from_dimensionless),

@@ -91,7 +91,7 @@ class MovingArmPicture:
         self.grip_source.on_change("data", dragged)
 
     def show(self, answer: dict[str, Any], length: PictureAxis) -> None:
-        """Draws the cycle of an answer `answer` of the task `limit_cycle`, with a sentence if the cycle is
+        """Draws the cycle in `answer`, an answer of the task `limit_cycle`, with a sentence if the cycle is
         not stable; if there is no cycle, the straight arm and a sentence. length: unit and label of both
         axes."""
         self.length = length
@@ -117,7 +117,7 @@ class MovingArmPicture:
 
     def show_motion(self, answer: dict[str, Any]) -> None:
         """Starts the animation of a released arm, and writes the state that the arm reaches into the title.
-        answer: result of `released_motion_answer`, and the position `tip`."""
+        answer: result of `released_motion_answer`."""
         factor = self.length.factor_from_dimensionless
         step = answer["shape_interval"]
         x = answer["x"] * factor
@@ -147,8 +147,8 @@ class MovingArmPicture:
         self.shapes_source.data = {name: [] for name in SHAPE_COLUMNS}
 
     def _draw_path(self, x: Array, y: Array, is_closed: bool) -> None:
-        """Draws the path of the tip through shapes, (shapes, nodes). is_closed: whether the last shape is
-        followed by the first."""
+        """Draws the path of the tip through shapes. x, y: coordinates of the shapes, (shapes, nodes) each, in
+        the unit of the axes. is_closed: whether the last shape is followed by the first."""
         path = smooth_tip_path(np.stack([x[:, -1], y[:, -1]], axis=1), is_closed)
         self.path_source.data = card.source_columns(x=path[:, 0], y=path[:, 1])
 

@@ -35,7 +35,7 @@ TABLE_DIGITS = 8
 """Number of significant digits in the table."""
 TABLE_UNIT_BY_SI_UNIT = {"m": ("cm", 1e2), "Pa": ("kPa", 1e-3), "W": ("mW", 1e3)}
 """(unit shown in the table, conversion factor), by SI unit."""
-SI_NAME_BY_VARIABLE = {
+SI_VARIABLE_BY_DIMENSIONLESS_NAME = {
     "growth_rate": "growth_rate_si", "frequency": "frequency_hz",
     "crossing_frequency": "crossing_frequency_hz", "F_onset": "pressure_onset",
     "F_hopf": "pressure_hopf",
@@ -46,8 +46,8 @@ SI_NAME_BY_VARIABLE = {
 
 
 class NumbersTable:
-    """Table of numbers from the latest answer to each kind of request, below sentences that say where the
-    model does not apply to an arm, or is doubtful."""
+    """Table of numbers from the latest answer to each kind of request, below sentences on the validity of the
+    model for an arm, unless the model applies."""
 
     def __init__(self) -> None:
         self.root = PageText(name="numbers")
@@ -73,7 +73,7 @@ class NumbersTable:
         self.root.text = f"{sentences}<table>{''.join(tables)}</table>"
 
 
-def number_text(value: Any, factor: float = 1.0) -> str:
+def first_element_text(value: Any, factor: float = 1.0) -> str:
     """First element of the array `value` as text: a real number times `factor`, or an integer; "" for a
     nonfinite number or a negative integer."""
     number = np.ravel(value)[0]
@@ -85,10 +85,10 @@ def number_text(value: Any, factor: float = 1.0) -> str:
 def _table_rows(kind: str, answer: dict[str, Any]) -> str:
     row_texts = []
     for name, meaning in ROW_LABELS_BY_KIND[kind].items():
-        if name not in answer or SI_NAME_BY_VARIABLE.get(name, f"{name}_si") in answer:
+        if name not in answer or SI_VARIABLE_BY_DIMENSIONLESS_NAME.get(name, f"{name}_si") in answer:
             continue
         unit, factor = TABLE_UNIT_BY_SI_UNIT.get(answer["units"][name], (answer["units"][name], 1.0))
-        if text := number_text(answer[name], factor):
+        if text := first_element_text(answer[name], factor):
             unit_text = "" if unit == "1" else escape(unit)
             row_texts.append(
                 f'<tr data-name="{name}"><td>{escape(meaning)}</td><td>{text}</td><td>{unit_text}</td></tr>'

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from . import card
-from .numbers_table import SI_NAME_BY_VARIABLE
+from .numbers_table import SI_VARIABLE_BY_DIMENSIONLESS_NAME
 
 
 class SpectrumPicture:
@@ -26,7 +26,10 @@ class SpectrumPicture:
         shows the meaning of the status instead."""
         own_names = ("growth_rate", "frequency")
         names = [
-            SI_NAME_BY_VARIABLE[name] if SI_NAME_BY_VARIABLE[name] in answer else name for name in own_names
+            SI_VARIABLE_BY_DIMENSIONLESS_NAME[name]
+            if SI_VARIABLE_BY_DIMENSIONLESS_NAME[name] in answer
+            else name
+            for name in own_names
         ]
         growth, frequency = (answer[name] for name in names)
         is_finite = np.isfinite(growth)

@@ -13,7 +13,7 @@ from ...errors import InputError
 from ...model.arm.quantities import GIVEN_QUANTITIES
 from ...model.units import quantity_in_si
 from ..page_state import MATERIAL_SECTION_BY_LAW, PageState, float_or_text
-from .diagram_curves_and_counts import (
+from .diagram_curves_and_unstable_counts import (
     DatasetOrArray,
     diagram_curves,
     flag_words,
@@ -30,12 +30,13 @@ LOAD_VALUE_COUNT = 121
 thresholds on this row."""
 ARM_ROW_COUNT = 12
 """Number of values of the second quantity of the diagram, for arms."""
-ARM_MAX_TO_CURRENT_RATIO = 2.0
-"""The values of an arm's second quantity extend from 1/ARM_MAX_TO_CURRENT_RATIO to ARM_MAX_TO_CURRENT_RATIO
-times the current value; the ratio is small, so that all arms are slender."""
+ARM_QUANTITY_MAX_TO_CURRENT_RATIO = 2.0
+"""The values of an arm's second quantity extend from 1/ARM_QUANTITY_MAX_TO_CURRENT_RATIO to
+ARM_QUANTITY_MAX_TO_CURRENT_RATIO times the current value; the ratio is small, so that all arms are
+slender."""
 CACHED_DIAGRAM_COUNT = 8
-"""Number of solved diagrams that a solver process keeps, some 100 kB each: the search of folds and torus
-points adds to the diagram that is drawn."""
+"""Number of solved diagrams that a solver process keeps, some 100 kB each. The search for folds and torus
+points adds curves to the diagram that was drawn last."""
 DIAGRAM_CYCLE_ACCURACY = 1e-4
 """Relative error of the cycles between special points; the diagram does not show these cycles. For the first
 rod of the page and F up to 200, the default error of 1e-6 takes three times as long, and changes the curves
@@ -60,12 +61,12 @@ TAPER_RANGE = (0.4, 1.6)
 def diagram_answer(state: PageState) -> dict[str, Any]:
     """Stability diagram around the rod or arm of `state`, as arrays by name.
 
-    x: load, (columns,). y: second parameter, (rows,). unstable_count: number of unstable modes,
-    UNKNOWN_UNSTABLE_COUNT or CRUSHED_UNSTABLE_COUNT, (rows, columns). between_x, between_y, between_count:
-    places between neighbouring crossings of a row, and numbers of unstable modes there, (places,).
-    crushing_load: the crushing load (zero stretch) of a row, (rows,), or empty. curves: stability boundaries.
-    cycle_curves: curves of folds and torus points of cycles. crossing_x, crossing_y, crossing_kind:
-    thresholds on the rows, (crossings,), empty for uniform rods.
+    x: load, (columns,): F in k3/L^2, or for arms the pressure in Pa. y: second parameter, (rows,), for arms
+    in SI units. unstable_count: number of unstable modes, UNKNOWN_UNSTABLE_COUNT or CRUSHED_UNSTABLE_COUNT,
+    (rows, columns). between_x, between_y, between_count: places between neighbouring crossings of a row, and
+    numbers of unstable modes there, (places,). crushing_load: the crushing load (zero stretch) of a row,
+    (rows,), or empty. curves: stability boundaries. cycle_curves: curves of folds and torus points of cycles.
+    crossing_x, crossing_y, crossing_kind: thresholds on the rows, (crossings,), empty for uniform rods.
     """
     state.rod_or_arm()
     if state.tab == "arm":
@@ -78,7 +79,7 @@ def diagram_answer_with_cycle_curves(state: PageState) -> dict[str, Any]:
     """The result of `diagram_answer` with curves of folds and torus points of cycles, which are searched on
     ROW_COUNT_OF_SLOW_DIAGRAMS rows. A diagram that this process has already solved is not solved again.
 
-    Raises InputError for rods that are not uniform or not of linear material.
+    Raises InputError for arms, and for rods that are not uniform or not of linear material.
     """
     state.rod_or_arm()
     if not can_follow_cycle_curves(state):
@@ -104,8 +105,9 @@ def has_uniform_linear_rods(state: PageState) -> bool:
 
 
 def second_parameter_values(state: PageState, row_count: int = ROW_COUNT) -> np.ndarray:
-    """Values of the second parameter, (rows,): logarithmically spaced around the current value, or linearly
-    over TAPER_RANGE for the taper. Raises InputError unless the current value is finite and positive."""
+    """Values of the second parameter, (row_count,): logarithmically spaced around the current value, or
+    linearly over TAPER_RANGE for the taper. Raises InputError unless the current value is finite and
+    positive."""
     if state.second_parameter == "taper":
         return np.linspace(*TAPER_RANGE, row_count)
     value = float_or_text(state.rod[state.second_parameter])
@@ -125,8 +127,9 @@ def _fixed_parameters(state: PageState) -> dict[str, Any]:
 def _diagram_of_uniform_rods(
     state: PageState, row_count: int = ROW_COUNT, cycles: Mapping[str, Any] | None = None
 ) -> dict[str, Any]:
-    """Diagram of uniform rods, with the variables of `diagram_answer`, from the task `phase_diagram`. cycles:
-    further keywords of the sweep, which request folds and torus points of cycles."""
+    """Diagram of uniform rods, with the variables of `diagram_answer`, from the task `phase_diagram`.
+    row_count: number of values of the second parameter. cycles: further keywords of the sweep, which request
+    folds and torus points of cycles."""
     rows = tuple(second_parameter_values(state, row_count).tolist())
     keywords = {**_fixed_parameters(state), **(cycles or {})}
     return _cached_uniform_rod_diagram(
@@ -138,8 +141,8 @@ def _diagram_of_uniform_rods(
 def _cached_uniform_rod_diagram(
     second_parameter: str, row_values: tuple[float, ...], F_max: float, keywords: tuple[tuple[str, Any], ...]
 ) -> dict[str, Any]:
-    """Diagram up to the load `F_max` on the values `row_values` of the parameter `second_parameter`;
-    callers must not change it."""
+    """Diagram of uniform rods, F from 0 to `F_max`, with a row for each of the `row_values` of the parameter
+    `second_parameter`; cached, so callers must not change it. keywords: further keywords of the sweep."""
     axes: dict[str, Any] = {"F": np.linspace(0, F_max, LOAD_VALUE_COUNT), second_parameter: list(row_values)}
     data = sweep("phase_diagram", progress=False, **axes, **dict(keywords))
     data = data.squeeze([name for name in ("k1", "k2", "gamma3") if name != second_parameter])
@@ -183,7 +186,7 @@ def _diagram_of_arms(state: PageState) -> dict[str, Any]:
     typed_value = quantity_in_si(
         state.second_parameter, state.arm[state.second_parameter], quantity.unit, quantity.example
     )
-    ratio = ARM_MAX_TO_CURRENT_RATIO
+    ratio = ARM_QUANTITY_MAX_TO_CURRENT_RATIO
     row_values = np.geomspace(typed_value / ratio, typed_value * ratio, ARM_ROW_COUNT)
     arm = state.rod_or_arm()
     assert isinstance(arm, Arm)

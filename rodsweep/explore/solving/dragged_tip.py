@@ -30,9 +30,10 @@ def released_motion_answer(state: PageState, tip: TipPosition) -> dict[str, Any]
     """Motion of the arm after its tip is released at `tip`: fields of `ReleasedMotion`, and the variables
     below.
 
-    frames: number of shapes per return of the tip. period: period, in tau2, of the cycle that the arm
-    reaches; NaN if the arm reaches no cycle. shape_x, shape_y: shapes over this period, (shapes, nodes), with
-    shapes = 0 if there is no cycle. Raises InputError if the motion cannot be integrated.
+    tip: the argument `tip`. frames: number of shapes per return of the tip. period: period, in tau2, of the
+    cycle that the arm reaches; NaN if the arm reaches no cycle. shape_x, shape_y: shapes over this period, in
+    L, (shapes, nodes), with shapes = 0 if there is no cycle. Raises InputError if the motion cannot be
+    integrated.
     """
     motion = released_motion(_limit_cycle_job(state, shapes=48), tip)
     if motion is None:
@@ -55,7 +56,7 @@ def motion_in_page_units(state: PageState, answer: Mapping[str, Any]) -> FilmedM
     return FilmedMotion(
         x=answer["x"] * length.factor_from_dimensionless,
         y=answer["y"] * length.factor_from_dimensionless,
-        shape_interval=answer["step"] * tau2,
+        shape_interval=answer["shape_interval"] * tau2,
         length=length.factor_from_dimensionless,
         units=(length.label, time),
     )

@@ -1,8 +1,7 @@
-"""When each kind of request is sent to a solver, and on what its answer depends: part of the page's state,
-and the dragged tip.
+"""When each kind of request is sent to a solver, and the inputs of its answer: part of the page's state, and
+the position of the dragged tip.
 
-A request is not sent again while nothing on which its answer depends has changed, unless the user presses a
-button.
+A request is sent again only if an input of its answer has changed, or if the user presses a button.
 """
 
 from dataclasses import replace
@@ -14,7 +13,7 @@ from .requests import SolveRequest
 
 AnswerInputs = tuple[PageState, TipPosition | None]
 """Part of the page's state, and position of the dragged tip, on which an answer depends."""
-INSTANT_REQUEST_KINDS = ("spectrum", "cycle", "thresholds", "growth")
+REQUEST_KINDS_AFTER_EVERY_CHANGE = ("spectrum", "cycle", "thresholds", "growth")
 """Kinds of requests that are sent after every change of the controls."""
 LOAD_REQUEST_KIND = "load"
 """Kind of the request for the load of an arm. The request is sent after a change of the controls if the load
@@ -46,8 +45,8 @@ def inputs_of_request(request: SolveRequest) -> AnswerInputs:
 
 def state_to_solve(kind: str, state: PageState, diagram_state: PageState | None) -> PageState:
     """State for a request of the kind `kind`: `state`, except for the request "cycles" while the rod of the
-    page lies in the drawn diagram. This state is `diagram_state`, so that the curves of cycles are added to
-    the drawn diagram. diagram_state: state around which the drawn diagram was solved; None if there is no
+    page lies in the drawn diagram. Then the state is `diagram_state`, so that the curves of cycles are added
+    to the drawn diagram. diagram_state: state around which the drawn diagram was solved; None if there is no
     diagram."""
     if kind != "cycles" or diagram_state is None or state.tab != "rod":
         return state

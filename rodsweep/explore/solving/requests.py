@@ -20,7 +20,7 @@ from ...config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS
 from ...errors import InputError
 from ...post.branch_curves import RodBranches, runs_of_equal_stability
 from ..page_state import MATERIAL_SECTION_BY_LAW, PageState, dimensionless_parameters_of
-from .diagram_curves_and_counts import DatasetOrArray, flag_words
+from .diagram_curves_and_unstable_counts import DatasetOrArray, flag_words
 from .diagrams import diagram_answer, diagram_answer_with_cycle_curves
 from .dragged_tip import TipPosition, equilibrium_with_held_tip, motion_film_answer, released_motion_answer
 
@@ -41,8 +41,8 @@ class SolveRequest:
     """Request of a page to a solver process.
 
     kind: a key of `STATE_SOLVERS`, or of `TIP_SOLVERS` if `tip` is given. state: state of the page at the
-    request. tip: position of the dragged tip, in L. stored_cycle: cycle from a result file, of which a film
-    is made without a solve.
+    request. tip: position of the dragged tip, in L. stored_cycle: cycle from a result file; if given, its
+    film is made without a solve.
     """
 
     kind: str
@@ -55,7 +55,7 @@ class Reply(NamedTuple):
     """Message of a solver process to the page.
 
     outcome: "answer", "refused", "failed" or "cancelled"; "ready" once the process has started; "progress"
-    during a long solve. content: variables of the answer by name; for "progress", `words` and
+    during a long solve. content: variables of the answer by name; for "progress", `text` and
     `completed_fraction` of a `SolvePosition`; for "refused" and "failed", an error message under the name
     `sentence`. seconds: time since the start of the solve.
     """
@@ -83,8 +83,10 @@ def thresholds_answer(state: PageState) -> AnswerVariables:
 
 
 def growth_answer(state: PageState) -> AnswerVariables:
-    """Growth rates of the leading modes along F, as variables by name, up to the largest force or just below
-    the crushing force (zero stretch). unit: "1/tau2" for a rod, "1/s" for an arm."""
+    """Growth rates of the leading modes along F, up to the largest force or just below the crushing force of
+    linear material (zero stretch), as variables by name. F: forces in k3/L^2, (n,). growth_rate: rates in
+    `unit`, (n, modes). unit: "1/tau2" for a rod, "1/s" for an arm. unstable_count: numbers of unstable modes,
+    (n,)."""
     rod_or_arm = state.rod_or_arm()
     tau2, unit = (rod_or_arm.tau2, "1/s") if isinstance(rod_or_arm, Arm) else (1.0, "1/tau2")
     rod = dimensionless_parameters_of(rod_or_arm)
@@ -99,8 +101,8 @@ def growth_answer(state: PageState) -> AnswerVariables:
 
 
 def cycle_answer(state: PageState) -> AnswerVariables:
-    """Limit cycle with shapes of the arm over a period, and x, y: coordinates of the straight arm, whose tip
-    the user can drag."""
+    """Limit cycle with shapes of the arm over a period. x, y: coordinates of the straight arm, whose tip the
+    user can drag, in L, (nodes,) each."""
     cycle = state.rod_or_arm().cycle(shapes=SHAPE_COUNT, progress=False)
     return answer_variables(cycle) | equilibrium_with_held_tip(state, None)
 
@@ -110,7 +112,7 @@ def film_answer(state: PageState) -> AnswerVariables:
     Raises InputError if the rod has no cycle."""
     answer = state.rod_or_arm().cycle(shapes=SHAPE_COUNT, progress=False)
     if not np.isfinite(answer.data["shape_x"].values).all():
-        raise InputError(f"there is no cycle to film, choose a load above flutter: {answer.sentence}")
+        raise InputError(f"there is no cycle to film: {answer.sentence}")
     return film_of_cycle(answer)
 
 
@@ -120,11 +122,8 @@ def film_of_cycle(cycle: Answer | DatasetOrArray) -> AnswerVariables:
 
 
 def branch_answer(state: PageState) -> AnswerVariables:
-    """Branches of cycles along F.
-
-    pieces: (F, y, stability) of each part of a branch or of the straight rod; stability is 1, 0, or -1 if
-    unknown. special: (F, y, kind, period) of each special point.
-    """
+    """Branches of cycles along F: the variables of `branch_answer_of_rod`, `status`, and `sentence`, the
+    meaning of the status."""
     answer = state.rod_or_arm().branch(stop=state.largest_force(), progress=False)
     rod = RodBranches(view_of_dataset(answer.whole, Path(answer.rod)))
     branches = branch_answer_of_rod(rod, state.largest_force())
@@ -132,7 +131,8 @@ def branch_answer(state: PageState) -> AnswerVariables:
 
 
 def crushing_force(rod: Mapping[str, float]) -> float:
-    """Force that crushes the thinnest section of a rod of linear material, in k3/L^2: k1 min(1, taper)^2."""
+    """Force that crushes the thinnest section of a rod of linear material, in k3/L^2: k1 min(1, taper)^2.
+    rod: parameters by name; a missing taper is 1."""
     return rod["k1"] * min(1.0, rod.get("taper", DEFAULT_VALUES_OF_PARAMETERS.get("taper", 1.0))) ** 2
 
 
@@ -169,15 +169,16 @@ def answer_to(request: SolveRequest) -> AnswerVariables:
 
 
 BranchPiece = tuple[Array, Array, int]
-"""(F, largest y of the tip, stability) of a part of a branch; F and y: (vertices,). Stability: 1 stable, 0
-unstable, -1 unknown."""
+"""(F, largest y of the tip, stability) of a part of a branch; F, in k3/L^2, and y, in L: (vertices,).
+Stability: 1 stable, 0 unstable, -1 unknown."""
 
 
 def branch_answer_of_rod(rod: RodBranches, end: float) -> dict[str, Any]:
     """Variables of the answer "branch" for a rod, by name.
 
     pieces: parts of the branches of cycles, and of the straight rod from F = 0 to `end`, see `BranchPiece`.
-    special: (F, y, kind, period) of each special point except ends of branches.
+    special: (F, y, kind, period), in the units k3/L^2, L and tau2, of each special point except ends of
+    branches.
     """
     pieces: list[BranchPiece] = [
         (curve.parameter[run], curve.tip_y_max[run], stable)

@@ -34,7 +34,7 @@ PROCESS_GROUP_BY_KIND = {
     "cycles": "diagram", "load": "spectrum",
 }  # fmt: skip
 """Process group of each kind of request, chosen so that fast requests do not wait for slow requests."""
-GROUP_NICENESS = {"spectrum": 0, "cycle": 10, "thresholds": 12, "branch": 15, "diagram": 15, "film": 15}
+NICENESS_BY_GROUP = {"spectrum": 0, "cycle": 10, "thresholds": 12, "branch": 15, "diagram": 15, "film": 15}
 """Unix niceness of the solver process of each group. Only the group "spectrum" has the priority of the page
 and the browser, so its pictures are drawn while other processes solve."""
 INTERRUPT_RETRY_SECONDS = 0.1
@@ -51,8 +51,8 @@ class CancellationDelays:
 
     min_age_of_cancelled_solve: a solve of at least this age is cancelled when a newer request with the same
     key waits. Younger solves finish, so that pictures follow a moving slider.
-    kill_after_cancellation_seconds: a process that has not replied this time after a cancellation is killed,
-    and restarted for the next request.
+    kill_after_cancellation_seconds: a process that has not replied within this time after a cancellation is
+    killed, and restarted for the next request.
     """
 
     min_age_of_cancelled_solve: float = 0.3
@@ -92,8 +92,8 @@ class SolverProcess:
         on_reply: ReplyCallback,
         progress: ReplyCallback = ignore_progress,
     ) -> None:
-        """Queues a request. An older request with the same key is removed from the queue, or cancelled if it
-        is being solved."""
+        """Queues a request. An older request with the same key is removed from the queue, or, if it is being
+        solved, cancelled at the age `min_age_of_cancelled_solve`."""
         self.waiting.pop(key, None)
         self.waiting[key] = request, on_reply, progress
         if self.current_request is None:
@@ -107,8 +107,7 @@ class SolverProcess:
             )
 
     def cancel_session(self, session: str) -> None:
-        """Removes all requests of a session from the queue, and cancels the session's request that is being
-        solved."""
+        """Removes all requests of a session from the queue, and cancels its running request."""
         for key in [key for key in self.waiting if key[0] == session]:
             del self.waiting[key]
         if self.current_request is not None and self.current_request[0][0] == session:
@@ -176,7 +175,7 @@ class SolverProcess:
             self._send_next()
 
     def _cancel_superseded(self, number: int, key: RequestKey) -> None:
-        """Cancels request `number` if it is still being solved while a newer one with an equal key waits."""
+        """Cancels request `number` if it is still being solved and a newer request with its key waits."""
         if number == self.request_number and key in self.waiting:
             self._interrupt(number)
 
@@ -188,9 +187,10 @@ class SolverProcess:
             return
         if self._process.is_alive() and self._process.pid is not None:
             os.kill(self._process.pid, signal.SIGINT)
-        IOLoop.current().call_later(self.delays.kill_after_cancellation_seconds, lambda: self._kill(number))
+        delay = self.delays.kill_after_cancellation_seconds
+        IOLoop.current().call_later(delay, lambda: self._kill_if_solving(number))
 
-    def _kill(self, number: int) -> None:
+    def _kill_if_solving(self, number: int) -> None:
         if self.current_request is None or number != self.request_number:
             return
         self._end_process()
@@ -214,7 +214,7 @@ class SolverProcesses:
     """Solver processes of all groups, shared by all pages of a server."""
 
     def __init__(self, delays: CancellationDelays | None = None):
-        self.groups = {group: SolverProcess(delays, niceness) for group, niceness in GROUP_NICENESS.items()}
+        self.groups = {name: SolverProcess(delays, value) for name, value in NICENESS_BY_GROUP.items()}
 
     def warm_up(self) -> None:
         """Sends one request of each of the WARM_UP_REQUEST_KINDS, to start their processes and load compiled
@@ -229,7 +229,8 @@ class SolverProcesses:
         on_reply: ReplyCallback,
         progress: ReplyCallback = ignore_progress,
     ) -> None:
-        """Queues a request of a session."""
+        """Queues a request of a session. on_reply, progress: called with the reply, and with each progress
+        message."""
         self.groups[PROCESS_GROUP_BY_KIND[request.kind]].ask(
             (session, request.kind), request, on_reply, progress
         )

@@ -113,7 +113,7 @@ def answer_requests(
     connection: "Connection[Reply, SolveRequest]", page_pipe: "Connection[Any, Any]", niceness: int
 ) -> None:
     """Answers the requests from the pipe `connection` until the pipe closes. page_pipe: pipe that closes when
-    the page's process ends."""
+    the page's process ends. niceness: increment of the Unix niceness."""
     os.setpgid(0, 0)  # protects from Ctrl-C, which ends the page; a separate session would undo the niceness
     os.nice(niceness)
     Thread(target=exit_when_pipe_closes, args=(page_pipe,), daemon=True).start()

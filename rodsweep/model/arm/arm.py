@@ -56,7 +56,7 @@ class SlenderArm:
     density_difference: GivenQuantity | None = None
     drag: str = DRAG_ESTIMATE_NAMES[0]
     si: SimpleNamespace = field(init=False, repr=False, compare=False)
-    """Quantities of UNITS_AND_EXAMPLES in SI units, or nan. `length`, `young` (base): of segments, if any."""
+    """Quantities of UNITS_AND_EXAMPLES in SI, or nan. With segments: `length` of all, `young` at the base."""
     si_segments: tuple[ArmSegment, ...] = field(init=False, repr=False, compare=False)
     """The segments of the arm in SI units; empty for an arm without segments."""
 
@@ -82,7 +82,7 @@ class SlenderArm:
         return float(getattr(self, name, PARAMETERS[name].neutral_value))
 
     def quoted_quantity(self, name: str) -> str:
-        """Name and value of the quantity `name` for messages: see `quoted_quantity`."""
+        """Name and value of the quantity `name` for messages, see `quantities.quoted_quantity`."""
         return quoted_quantity(name, getattr(self, name))
 
     @cached_property
@@ -136,7 +136,7 @@ class SlenderArm:
     @property
     def crushing_force(self) -> float:
         """Follower force that crushes the weakest section, in k3/L^2; inf if no force crushes the arm."""
-        return self.material.relative_crushing_force(self.taper) * self.k1
+        return self.material.crushing_force_over_k1(self.taper) * self.k1
 
     @property
     def load_name(self) -> str | None:

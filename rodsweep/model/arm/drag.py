@@ -53,20 +53,21 @@ class Drag:
         return self.viscosity * self.rotational_factor
 
 
-def cox_drag(slenderness: float) -> tuple[float, float]:
-    """(gamma1, gamma2)/viscosity of a straight rigid cylinder (Cox 1970; Batchelor 1970); slenderness L/a."""
+def cox_drag_over_viscosity(slenderness: float) -> tuple[float, float]:
+    """(gamma1, gamma2)/viscosity of a straight rigid cylinder (Cox 1970; Batchelor 1970). slenderness:
+    L/a."""
     logarithm = log(2 * slenderness)
     return 2 * pi / (logarithm - 1.5), 4 * pi / (logarithm - 0.5)
 
 
-def gray_hancock_drag(slenderness: float) -> tuple[float, float]:
+def gray_hancock_drag_over_viscosity(slenderness: float) -> tuple[float, float]:
     """(gamma1, gamma2)/viscosity for waves of length 4 L, the longest waves of a clamped rod (Gray and
     Hancock 1955). slenderness: L/a."""
     logarithm = log(8 * slenderness)
     return 2 * pi / (logarithm - 0.5), 4 * pi / (logarithm + 0.5)
 
 
-def lighthill_drag(slenderness: float) -> tuple[float, float]:
+def lighthill_drag_over_viscosity(slenderness: float) -> tuple[float, float]:
     """(gamma1, gamma2)/viscosity for helical waves of length L, which is near the wavelength of flutter
     (Lighthill 1976). slenderness: L/a."""
     logarithm = log(0.18 * slenderness)
@@ -74,8 +75,8 @@ def lighthill_drag(slenderness: float) -> tuple[float, float]:
 
 
 def drag_estimates(viscosity: float, length: float, radius: float, half_height: float) -> tuple[Drag, ...]:
-    """Drag estimates of one arm, in the order of DRAG_ESTIMATE_NAMES. viscosity: in Pa s. length, radius,
-    half_height (a, also for an ellipse): in m.
+    """Drag estimates of one arm, in the order of DRAG_ESTIMATE_NAMES. viscosity: in Pa s. length, radius: in
+    m, for gamma1 and gamma2. half_height: a in gamma3, in m, also for an ellipse.
 
     gamma3 is from pi eta a^2 to 4 pi eta a^2; the likeliest estimate has the geometric mean. The smallest is
     for sections that turn about a diameter: the surface velocity -Omega x2 of a long cylinder is axial, and
@@ -85,9 +86,12 @@ def drag_estimates(viscosity: float, length: float, radius: float, half_height: 
     slenderness = length / radius
     min_rotational = pi * half_height**2
     max_rotational = 4 * pi * half_height**2
-    translational_drags = (gray_hancock_drag(slenderness), lighthill_drag(slenderness))
+    translational_drags = (
+        gray_hancock_drag_over_viscosity(slenderness),
+        lighthill_drag_over_viscosity(slenderness),
+    )
     # The geometric mean, because the rotational drag is known only up to a factor, from pi to 4 pi.
-    drag_factors = [(*cox_drag(slenderness), (min_rotational * max_rotational) ** 0.5)]
+    drag_factors = [(*cox_drag_over_viscosity(slenderness), (min_rotational * max_rotational) ** 0.5)]
     drag_factors += [
         (*translation, rotational)
         for translation in translational_drags

@@ -24,10 +24,10 @@ POWER_ITERATION_TOLERANCE = 1e-12
 """The power iteration stops when the largest eigenvalue changes relatively by at most this."""
 MAX_POWER_ITERATIONS = 1000
 """Maximum number of steps of the power iteration, which usually takes twenty."""
-MAX_NEIGHBOURING_RADIUS_RATIO = 1.3
+MAX_RADIUS_RATIO_OF_PROFILE_ROWS = 1.3
 """Maximum ratio of the radii of a cone at neighbouring u of its profile. The cubic polynomials of the profile
-then approximate the drags, for tapers from 0.01 to 100, to 6e-4 if the arm is 20 or more radii long, to 5e-3
-at ten radii."""
+then approximate the drags, for tapers from 0.01 to 100, to a relative error of 6e-4 if the arm is 20 or more
+radii long, and of 5e-3 if it is ten radii long."""
 
 
 class Station(NamedTuple):
@@ -103,7 +103,7 @@ class ArmGeometry:
         """Profile of a cone: factors of gamma1 and gamma2. All other factors are 1, because the parameter
         `taper` implies them. drag_index: index of the drag estimate in DRAG_ESTIMATE_NAMES."""
         # A single interval would be a straight line, as `Profile` has no neighbour for its slopes.
-        interval_count = max(2, ceil(abs(log(self.taper)) / log(MAX_NEIGHBOURING_RADIUS_RATIO)))
+        interval_count = max(2, ceil(abs(log(self.taper)) / log(MAX_RADIUS_RATIO_OF_PROFILE_ROWS)))
         # Neighbouring radii have equal ratios, since the drag depends on the logarithm of the radius.
         radii = self.taper ** (np.arange(interval_count + 1) / interval_count)
         u = (1 - radii) / (1 - self.taper)

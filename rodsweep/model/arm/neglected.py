@@ -20,7 +20,7 @@ from .drag import Drag
 from .section import Tube
 from .unsteady_drag import drag_phase_lag, frequency_of_phase_lag
 
-GRAVITY = 9.81
+GRAVITATIONAL_ACCELERATION = 9.81
 """Acceleration of gravity, in m/s^2."""
 DOUBTFUL_RATIO = 0.1
 """Results are doubtful if `value`/`limit` of a neglected effect is larger than this."""
@@ -49,7 +49,7 @@ LARGE_AMPLITUDE = 0.5
 
 
 class Validity(IntEnum):
-    """Validity of the rod model in view of one neglected effect. Result files contain these integers."""
+    """Validity of the rod model, judged by one neglected effect. Result files contain these integers."""
 
     applies = 0
     doubtful = 1
@@ -92,7 +92,7 @@ def neglected_effects(
     amplitude: ArrayLike = LARGE_AMPLITUDE,
 ) -> tuple[Effect, ...]:
     """All neglected effects on a moving arm. rate: angular frequency of the motion, in rad/s; nan for an arm
-    at rest. F: `base_force_of_equal_compression` of the follower force, in k3/L^2; nan without load. drag:
+    at rest. F: `base_force_of_largest_compression` of the follower force, in k3/L^2; nan without load. drag:
     the drag estimate for which `rate` was computed; by default the smallest estimate, for which inertia is
     largest. amplitude: amplitude of the tip divided by L. Weight is included if the arm has a density
     difference, flattening of the wall if the arm has a bore."""
@@ -138,7 +138,8 @@ def angular_frequency_at_smallest_drag(arm: SlenderArm, frequency: ArrayLike) ->
 
 
 def arm_inertia_effect(arm: SlenderArm, omega: Array, drag: Drag) -> Effect:
-    """Phase lag m omega/gamma2 of the drag, caused by the arm's mass. omega: omega in rad/s, (...,)."""
+    """Phase lag m omega/gamma2 of the drag, caused by the arm's mass per length m. omega: angular frequency
+    in rad/s, (...,)."""
     places = zip(arm.geometry.stations, arm.drags_along(drag), strict=True)
     # The value is taken at the section with the largest ratio of mass to drag.
     value = max(arm.mass_per_length_at(station) / local_drag.gamma2 for station, local_drag in places) * omega
@@ -169,22 +170,23 @@ def fluid_inertia_effect(arm: SlenderArm, omega: Array, drag: Drag) -> Effect:
 
 
 def compression_effect(arm: SlenderArm, F: Array) -> Effect:
-    """Relative change of the length of the arm by compression or tension, abs(F)/k1, shaped as F, (...,)."""
+    """Relative change of the length of the arm, abs(F)/k1, of the shape of F. F: in k3/L^2, (...,)."""
     return _effect_independent_of_viscosity("compression", abs(F) / arm.k1, COMPRESSION_LIMIT)
 
 
-def base_force_of_equal_compression(arm: SlenderArm, F: ArrayLike) -> Array:
-    """Force that compresses the base as much as F compresses the weakest section, in the shape of F, (...,).
-    F: in k3/L^2. The result is nan for rubber, whose constitutive law includes large compression."""
+def base_force_of_largest_compression(arm: SlenderArm, F: ArrayLike) -> Array:
+    """Force, in k3/L^2 and of the shape of F, that compresses the base as much as F compresses the weakest
+    section. F: in k3/L^2, (...,). The result is nan for rubber, whose law includes large compression."""
     # At the base a force F compresses by F/k1, at the weakest section by F over the crushing force.
     crushing_ratio = arm.crushing_force / arm.k1
     return np.asarray(F, float) / crushing_ratio if crushing_ratio < inf else np.full(np.shape(F), np.nan)
 
 
 def weight_effect(arm: SlenderArm, F: Array) -> Effect:
-    """Ratio of weight minus buoyancy to the weight that buckles the upright arm, shaped as F, (...,)."""
+    """Ratio of weight minus buoyancy to the weight that buckles the upright arm. The ratio does not depend on
+    F, (...,), and has the shape of F."""
     # A lighter arm is pulled up as much as a heavier one is pulled down.
-    weight_density = abs(arm.si.density_difference) * GRAVITY
+    weight_density = abs(arm.si.density_difference) * GRAVITATIONAL_ACCELERATION
     weight = weight_density * arm.cross_section.area * arm.si.length
     # For a uniform arm the closed value is exact, where the quadrature is not.
     ratio_of_uniform_arm = weight / (SELF_BUCKLING_WEIGHT * arm.force_scale)
@@ -201,8 +203,8 @@ def wall_flattening_effect(
     amplitude: ArrayLike = LARGE_AMPLITUDE,
 ) -> Effect:
     """Fraction of the bending stiffness that a beating tube loses, in the common shape (...,) of the
-    arguments. length, radius, bore: in m. poisson: Poisson's ratio nu. amplitude: amplitude of the tip
-    divided by the length. A tube bent to the radius of curvature R flattens by zeta = (1 - nu^2) (r^2/(R
+    arguments. length, radius (outer) and bore (inner radius): in m. poisson: nu. amplitude: amplitude of the
+    tip divided by the length. A tube bent to the radius of curvature R flattens by zeta = (1 - nu^2) (r^2/(R
     t))^2, where r is the radius of the middle of the wall and t the thickness; the remaining fraction of its
     stiffness is 1 - 3 zeta/2 (Brazier 1927)."""
     outer, inner, nu = (np.asarray(x, float) for x in (radius, bore, poisson))
@@ -216,7 +218,7 @@ def wall_flattening_effect(
 
 
 def reynolds_number_effect(arm: SlenderArm, omega: Array, amplitude: Array) -> Effect:
-    """Reynolds number rho U (2 a)/eta of the tip, which has the speed U = rate * amplitude * L. omega: in
+    """Reynolds number rho U (2 a)/eta of the tip, which has the speed U = omega * amplitude * L. omega: in
     rad/s, (...,). amplitude: in L. The effect has the shape of `omega`."""
     # The tip is the fastest point of the arm.
     speed = omega * amplitude * arm.si.length

@@ -69,7 +69,7 @@ ARM_SCALES = {
     "pressure_scale": Quantity("Pa", "pressure on the tip's cross section that makes F = 1, k3/(L^2 A)"),
 }
 """Units of time, force and pressure that an arm defines, by name of the property of `SlenderArm`."""
-LOAD_SCALE_NAMES = {load: f"{load}_scale" for load in LOAD_NAMES}
+LOAD_SCALE_NAME_BY_LOAD = {load: f"{load}_scale" for load in LOAD_NAMES}
 """Name of the property of `SlenderArm` that is the load at which F = 1, by name of the load."""
 ARM_FILE_VARIABLES = GIVEN_QUANTITIES | ARM_SCALES
 """All variables of an arm in a result file, except the parameters of the arm as a rod."""
@@ -88,8 +88,8 @@ def arm_quantity_in_si(name: str, quantity: GivenQuantity | None) -> float:
 
 
 def quoted_quantity(name: str, quantity: GivenQuantity) -> str:
-    """Name and value of the quantity `name` in UNITS_AND_EXAMPLES, for messages, like "length = '10 cm'": a
-    text as the user wrote it, a number with its SI unit."""
+    """Name and value of the quantity `name` in UNITS_AND_EXAMPLES, for messages, like "length = '10 cm'". A
+    text is quoted as the user wrote it; a number has its SI unit."""
     if isinstance(quantity, str):
         return f"{name} = '{quantity}'"
     unit, example = UNITS_AND_EXAMPLES[name]
@@ -98,7 +98,7 @@ def quoted_quantity(name: str, quantity: GivenQuantity) -> str:
 
 def radius_name_of_diameter(name: str, names: Collection[str]) -> str:
     """The quantity in `names` that is half of the diameter `name`, such as inner_radius for inner_diameter;
-    "" if `name` is no diameter, or its radius is not known."""
+    "" if `name` is no diameter, or if `names` lacks the radius."""
     plain_name = name.lower().replace("-", "_").removeprefix("outer_")
     radius = plain_name.replace("diameter", "radius")
     return radius if radius != plain_name and radius in names else ""

@@ -22,7 +22,7 @@ CRUSHED_FORCE_RATIO = 1 - 1e-14
 """An arm is refused as crushed if F divided by the crushing force is at least this. The limit is below 1
 because unit conversion has rounding errors."""
 LENGTH_TOLERANCE = 1e-9
-"""A given length may differ from the sum of the segment lengths by this, relatively, for rounding."""
+"""A given length may differ from the sum of the segment lengths by this relative amount (rounding)."""
 INCOMPRESSIBLE_POISSON = 0.5
 """Poisson's ratio of incompressible material, which a swelling section requires."""
 
@@ -41,7 +41,7 @@ def refuse_wrong_choices(arm: "SlenderArm") -> None:
         raise InputError(f"poisson = {short_repr(poisson)} is not a number above -1 and up to 0.5")
     if not isinstance(arm.drag, str):
         raise InputError(
-            f"drag = {short_repr(arm.drag)} is not one name; choose one of {', '.join(DRAG_ESTIMATE_NAMES)}"
+            f"drag = {short_repr(arm.drag)} is not a name; choose one of {', '.join(DRAG_ESTIMATE_NAMES)}"
         )
     if arm.drag == ALL_DRAG_ESTIMATES_NAME:
         raise InputError(

@@ -14,8 +14,8 @@ class BoreTooWide(InputError):
 @dataclass(frozen=True, slots=True)
 class Circle:
     """A solid circular cross-section of radius a, in m. area_and_moment_formula, shear_coefficient_formula,
-    pressure_force_formula: texts for reports, on area and second moment, on the shear coefficient, and on the
-    tip force under a pressure p."""
+    pressure_force_formula: texts for reports, with the formulas of area and second moment, of the shear
+    coefficient, and of the tip force under a pressure p."""
 
     radius: float
     area_and_moment_formula: ClassVar[str] = "A = pi a^2, I = pi a^4/4"
@@ -60,8 +60,8 @@ class Circle:
 @dataclass(frozen=True, slots=True)
 class Tube:
     """A circular cross-section of radius a with a bore of radius b, in m. The bore is closed at the tip.
-    area_and_moment_area_and_moment_formula, shear_coefficient_formula, pressure_force_formula: texts for
-    reports, on area and second moment, on the shear coefficient, and on the tip force under a pressure p."""
+    area_and_moment_formula, shear_coefficient_formula, pressure_force_formula: texts for reports, with the
+    formulas of area and second moment, of the shear coefficient, and of the tip force under a pressure p."""
 
     radius: float
     inner_radius: float
@@ -115,8 +115,8 @@ class Tube:
 @dataclass(frozen=True, slots=True)
 class Rectangle:
     """A solid rectangular cross-section, in m: height in the plane of motion, width across this plane.
-    area_and_moment_area_and_moment_formula, shear_coefficient_formula, pressure_force_formula: texts for
-    reports, on area and second moment, on the shear coefficient, and on the tip force under a pressure p."""
+    area_and_moment_formula, shear_coefficient_formula, pressure_force_formula: texts for reports, with the
+    formulas of area and second moment, of the shear coefficient, and of the tip force under a pressure p."""
 
     width: float
     height: float

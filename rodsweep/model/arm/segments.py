@@ -47,7 +47,9 @@ def segment_texts(segments: Any) -> tuple[str, ...]:
         )
     if len(segments) > MAX_SEGMENTS:
         raise InputError(f"segments: {len(segments)} are given; give at most {MAX_SEGMENTS}")
-    written_segments = [written_segment(number, segment) for number, segment in enumerate(segments, 1)]
+    written_segments = [
+        quantities_of_written_segment(number, segment) for number, segment in enumerate(segments, 1)
+    ]
     for number, quantities in enumerate(written_segments, 1):
         _segment_in_si(number, quantities)
     return tuple(map(_segment_text, written_segments))
@@ -56,13 +58,15 @@ def segment_texts(segments: Any) -> tuple[str, ...]:
 def segments_from_texts(texts: Sequence[str]) -> tuple[ArmSegment, ...]:
     """Segments in SI units. texts: result of `segment_texts`."""
     return tuple(
-        _segment_in_si(number, written_segment(number, text)) for number, text in enumerate(texts, 1)
+        _segment_in_si(number, quantities_of_written_segment(number, text))
+        for number, text in enumerate(texts, 1)
     )
 
 
-def written_segment(segment_number: int, segment: Any) -> WrittenSegment:
-    """Quantities of a segment. segment: a text or a mapping. Raises InputError for an unknown or a missing
-    key. segment_number: position of the segment, counted from 1 at the base, for messages."""
+def quantities_of_written_segment(segment_number: int, segment: Any) -> WrittenSegment:
+    """Quantities of a segment. segment: a text or a mapping. Raises InputError for an invalid text, and for
+    an unknown or a missing key. segment_number: position of the segment, counted from 1 at the base, for
+    messages."""
     start = f"segments, number {segment_number}"
     quantities = dict(_quantities_by_name(start, segment))
     for name in quantities:
@@ -77,8 +81,8 @@ def written_segment(segment_number: int, segment: Any) -> WrittenSegment:
 
 
 def _quantities_by_name(start: str, segment: Any) -> Mapping[str, GivenQuantity]:
-    """Quantities of a segment by name. segment: a mapping or a text. InputError begins with
-    `start`."""
+    """Quantities of a segment by name. segment: a mapping or a text. Raises InputError, beginning with
+    `start`, for any other value and for an invalid text."""
     if isinstance(segment, Mapping):
         return {str(name): value for name, value in segment.items()}
     length, colon, parts = segment.partition(":") if isinstance(segment, str) else ("", "", "")
@@ -119,7 +123,7 @@ def _segment_in_si(segment_number: int, quantities: WrittenSegment) -> ArmSegmen
 
 
 def _segment_text(quantities: WrittenSegment) -> str:
-    """The segment as a text that `written_segment` accepts."""
+    """The segment as a text that `quantities_of_written_segment` accepts."""
     texts = {
         name: value.strip()
         if isinstance(value, str)

@@ -11,11 +11,11 @@ MAX_SERIES_FREQUENCY = 1e-3
 """The mobility is computed from a power series for frequencies s below this number, in eta k^2/rho. At this
 frequency the rounding error of the closed formula is 1e-11 of the phase lag, the truncation error of the
 series less than 1e-12."""
-LOWEST_FREQUENCY = 1e-6
+LOWEST_SEARCHED_FREQUENCY = 1e-6
 """Lower end of the frequencies s among which `frequency_of_phase_lag` searches."""
-SUBINTERVAL_COUNT = 64
+PHASE_LAG_SUBINTERVAL_COUNT = 64
 """Number of subintervals into which `frequency_of_phase_lag` divides the current interval of ln s."""
-REFINEMENT_COUNT = 10
+PHASE_LAG_DIVISION_COUNT = 10
 """Number of divisions in `frequency_of_phase_lag`. 64^10 = 2^60 subintervals of an initial interval of width
 20 to 30 reach rounding error with few calls on arrays."""
 
@@ -30,7 +30,8 @@ def drag_phase_lag(s: ArrayLike, logarithm: float) -> Array:
         int d^2q/(2 pi)^2 (q^2/2 + k^2)/(eta (q^2 + k^2) (q^2 + k^2 + i s k^2))
             = (Lambda - 1/2 - (1 - 1/(i s)) ln(1 + i s)/2)/(4 pi eta)
 
-    and Lambda/(4 pi eta) in steady flow. The phase, of the shape of s, is 3 s/(4 Lambda) for small s.
+    In steady flow the mobility is Lambda/(4 pi eta). The phase lag, of the shape of s, is 3 s/(4 Lambda) for
+    small s.
     """
     z = 1j * np.asarray(s, float)
     # In the closed formula 1/2 and -(1/z) log(1 + z)/2 cancel for small z.
@@ -48,11 +49,11 @@ def drag_phase_lag(s: ArrayLike, logarithm: float) -> Array:
 def frequency_of_phase_lag(phase: float, logarithm: float) -> float:
     """Frequency s at which `drag_phase_lag` equals `phase` < pi/2, by repeated subdivision of the interval of
     ln s. logarithm: Lambda = 4 pi eta/gamma2."""
-    low_log = log(LOWEST_FREQUENCY)
+    low_log = log(LOWEST_SEARCHED_FREQUENCY)
     high_log = 2 * logarithm  # here the real part of the mobility is -1/2, so the phase is above pi/2
-    for _ in range(REFINEMENT_COUNT):
+    for _ in range(PHASE_LAG_DIVISION_COUNT):
         # A call with 64 values costs little more than with one, so few wide divisions beat bisection.
-        edges = np.linspace(low_log, high_log, SUBINTERVAL_COUNT + 1)
+        edges = np.linspace(low_log, high_log, PHASE_LAG_SUBINTERVAL_COUNT + 1)
         index = np.count_nonzero(drag_phase_lag(np.exp(edges[1:-1]), logarithm) < phase)  # the phase rises
         low_log = float(edges[index])
         high_log = float(edges[index + 1])

@@ -46,8 +46,9 @@ _texts_at_first_use: dict[FunctionType, FunctionText] = {}
 
 
 def cache_directories() -> list[Path]:
-    """Directories for compiled code, in order of preference: a directory under NUMBA_CACHE_DIR if this is
-    set, otherwise in the package, then under XDG_CACHE_HOME or ~/.cache."""
+    """Directories for compiled code, in order of preference: only a directory under NUMBA_CACHE_DIR if this
+    variable is set; otherwise a directory in the package, then one under XDG_CACHE_HOME, or under ~/.cache if
+    XDG_CACHE_HOME is not set."""
     if directory := os.environ.get("NUMBA_CACHE_DIR"):
         return [Path(directory) / "rodsweep"]
     # First next to the package, so that an installation compiled once serves all its users.
@@ -92,8 +93,8 @@ class KernelCache(_Cache):
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Writes the compiled function `data` for the signature `sig` to disk. Nothing is written if the code
-        contains memory addresses, or if a global value that the code reads has changed since the first use of
-        the function. If no directory is writable, a warning is issued."""
+        contains memory addresses or lifted loops, or if a global value that the code reads has changed since
+        the first use of the function. If no directory is writable, a warning is issued."""
         # An empty mapping reads all texts anew, so that the two names differ if a value has changed.
         name = self._cache_file_name(sig, data.codegen, {})
         has_changed = name != self._cache_file_name(sig, data.codegen, _texts_at_first_use)

@@ -23,8 +23,8 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def compiled_with_reordered_sums(function: Callable[P, R]) -> Callable[P, R]:
-    """The function `function`, compiled as by `compiled` but with sums in any order, which is five times as
-    fast.
+    """The function `function`, compiled as by `compiled`, but with sums in any order. The code is five times
+    as fast.
 
     Infinities and nan behave as usual. The function is always inlined in its callers. With a shared copy,
     results would depend on the caller that a process loads first, because copies differ in the order of sums.

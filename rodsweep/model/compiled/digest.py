@@ -123,7 +123,7 @@ def _global_values_read(function: FunctionType, instructions: Iterable[dis.Instr
 
 
 def _code_objects(code: CodeType) -> Iterator[CodeType]:
-    """Yields a code object and all code objects inside it, as of inner functions."""
+    """Yields a code object and all code objects inside it, such as those of inner functions."""
     yield code
     for constant in code.co_consts:
         if isinstance(constant, CodeType):
@@ -152,8 +152,8 @@ def _in_fixed_order(value: Any) -> Any:
 
 
 class _ValueTextConverter:
-    """Converter of the values that one function refers to into text that is equal in every process. function:
-    the function. called_kernels: kernels found among the converted values."""
+    """Converts the values that one function refers to into text that is equal in every process. function: the
+    function. called_kernels: kernels found among the converted values."""
 
     def __init__(self, function: FunctionType) -> None:
         self.function = function

@@ -4,9 +4,9 @@ The nonlinear terms of the rod have the same formula on se(2) and se(3). Loops a
 three times as long as unrolled code: a loop over 4 terms costs more than the products. `UnrolledOverAlgebra`
 therefore unrolls the syntax tree of a function for each requested algebra g:
 
-- a loop over a value that depends only on g, `for a in g.components`, becomes a sequence of statements,
+- a loop over a value that depends only on g, `for a in g.component_indices`, becomes a list of statements,
 - a condition that depends only on g is replaced by the chosen branch, a number by a constant,
-- a list comprehension over g, `E = [... for a in g.components]`, becomes one variable per list element.
+- a list comprehension over g, `E = [... for a in g.component_indices]`, becomes one variable per element.
 
 A direct call, with the algebra as first argument, runs the function as ordinary Python.
 """
@@ -18,7 +18,7 @@ from textwrap import dedent
 from types import CodeType
 from typing import Any, Concatenate, Generic, NamedTuple, ParamSpec, TypeVar
 
-from ..algebra import LieAlgebra
+from ..lie_algebra import LieAlgebra
 from .compilation import compiled_with_reordered_sums
 
 P = ParamSpec("P")
@@ -96,7 +96,8 @@ class _UnrollingState(NamedTuple):
 
 
 class _UnrollingTransformer(ast.NodeVisitor):
-    """Copies a syntax tree. Names in `known_values` become values, and loops over them are unrolled."""
+    """Copies a syntax tree. Names in `known_values` are replaced by their values, and loops over known values
+    are unrolled."""
 
     def __init__(self, known_values: Mapping[str, Any], state: _UnrollingState) -> None:
         self.known_values = known_values
@@ -123,7 +124,7 @@ class _UnrollingTransformer(ast.NodeVisitor):
         if node.orelse or any(isinstance(part, jump_statements) for part in ast.walk(node)):
             raise TypeError(f"line {node.lineno}: an unrolled loop has no break, continue, return or else")
         iterations = [
-            self._with_loop_variable(node.target, item)._visit_all(node.body)
+            self._transformer_with_loop_variable(node.target, item)._visit_all(node.body)
             for item in self._evaluate(node.iter)
         ]
         return [statement for iteration in iterations for statement in iteration]
@@ -150,7 +151,7 @@ class _UnrollingTransformer(ast.NodeVisitor):
         for index, item in enumerate(self._evaluate(loop.iter)):
             name = ast.copy_location(ast.Name(f"{target.id}_{index}", ast.Store()), target)
             assignment = ast.copy_location(ast.Assign([name], value.elt), node)
-            copies = self._with_loop_variable(loop.target, item).visit(assignment)
+            copies = self._transformer_with_loop_variable(loop.target, item).visit(assignment)
             assignments += copies if isinstance(copies, list) else [copies]
         return assignments
 
@@ -167,7 +168,7 @@ class _UnrollingTransformer(ast.NodeVisitor):
             call.args = call.args[1:]
         return call
 
-    def _with_loop_variable(self, target: ast.expr, item: Any) -> "_UnrollingTransformer":
+    def _transformer_with_loop_variable(self, target: ast.expr, item: Any) -> "_UnrollingTransformer":
         """The transformer for the body of one loop iteration, in which `target` has the value `item`."""
         return _UnrollingTransformer(
             {**self.known_values, **_loop_variable_values(target, item)}, self.shared_state

@@ -48,7 +48,7 @@ def _cached_factors(
 
 
 def _factors_along(profile: Profile | None, taper: float, u: Array, remainder: Array) -> dict[str, Array]:
-    """The result of `factors_along`, computed anew."""
+    """The result of `factors_along`, without the cache. remainder: zeros if u is exact."""
     if profile is None:
         factors: dict[str, Array] = dict.fromkeys(FACTOR_NAMES, np.ones(u.shape))
     else:
@@ -80,6 +80,6 @@ def smallest_factor_along(profile: Profile | None, taper: float, name: str) -> f
             relative_radius(taper, u) ** exponent * row[column]
             for u, row in zip(profile.u, profile.rows, strict=True)
         ]
-        points = profile.minimum_points_between_rows(name, taper, min(row_factors))
+        points = profile.candidate_minima_between_rows(name, taper, min(row_factors))
         factors_between_rows = relative_radius(taper, points) ** exponent * profile.factors_at(points)[column]
     return float(min(*row_factors, *factors_between_rows))

@@ -1,8 +1,8 @@
 """Compiled stress of a rod at a jump of its material as a function of the mean strain, for every law.
 
-Stress is continuous at a jump, strain is not. Let a and b be the unknowns of `stress_strain` on the base side
-and on the tip side of the jump. Let w_a and w_b be the weights of both sides in the mean strain, with w_a +
-w_b = 1 for each component. Then
+Stress is continuous at a jump, strain is not. Let a and b be the unknowns of `stress_strain`
+on the base side and on the tip side of the jump. Let w_a and w_b be the weights of both sides in the mean
+strain, with w_a + w_b = 1 for each component. Then
 
     N(a) = N(b),    M(a) = M(b),    w_a a + w_b b = q,
 
@@ -22,7 +22,7 @@ from ..compiled.compilation import compiled
 from .stress_strain import (
     LINEAR_LAW_NUMBER,
     LocalSection,
-    Stress,
+    StressMinusRestStress,
     TangentMatrix,
     stress_minus_rest_stress,
     stress_parameter_derivative,
@@ -40,8 +40,8 @@ CONVERGED_RELATIVE_STEP = 1e-9
 """Newton's method stops when |step| <= CONVERGED_RELATIVE_STEP * |unknown|, as the next step would be
 rounding."""
 MIN_STEP_STRETCH_RATIO = 0.1
-"""A Newton step is shortened so that the stretch h1 after the step is at least this times h1 before the step,
-because the law is defined for h1 > 0 only."""
+"""A Newton step is shortened so that the stretch h1 after the step is at least this fraction of h1 before the
+step, because the law is defined for h1 > 0 only."""
 
 
 class LawUnknowns(NamedTuple):
@@ -127,7 +127,7 @@ def unknowns_behind_jump(sides: Array, q: LawUnknowns, a: LawUnknowns) -> LawUnk
 
 
 @compiled
-def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
+def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> StressMinusRestStress:
     """Stresses N and M at a jump, minus their values at rest, for the mean unknowns q1, q3. law: number of
     the constitutive law. sides: both sides, (2, 7)."""
     # The stress is equal on both sides, so one side suffices.
@@ -137,8 +137,9 @@ def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
 
 @compiled
 def _compliance_at_jump(law: int, sides: Array, a: LawUnknowns, b: LawUnknowns) -> TangentMatrix:
-    """Derivatives of the mean unknowns q by the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM). law: number of
-    the constitutive law. a, b: unknowns on the base side and on the tip side. sides: both sides, (2, 7)."""
+    """Derivatives of the mean unknowns q with respect to the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM). law:
+    number of the constitutive law. a, b: unknowns on the base side and on the tip side. sides: both sides,
+    (2, 7)."""
     S = stress_tangent(law, _section_of_side(sides[0]), a.q1, a.q3)
     T = stress_tangent(law, _section_of_side(sides[1]), b.q1, b.q3)
     # Compliances of the two sides add in the mean, stiffnesses do not, so both tangents are inverted.
@@ -185,7 +186,7 @@ def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> TangentMatr
 @compiled
 def stress_parameter_derivative_at_jump(
     law: int, sides: Array, change: Array, q1: float, q3: float
-) -> Stress:
+) -> StressMinusRestStress:
     """Derivatives of the stresses N and M at a jump with respect to a parameter, at fixed mean unknowns q1,
     q3.
 
@@ -213,4 +214,4 @@ def stress_parameter_derivative_at_jump(
         q3_derivative += sides[i, 4] * unknowns_derivative.q3
     # The stress must change so that its effect on the mean cancels that of the parameter.
     out = _solve_tangent_system(_compliance_at_jump(law, sides, a, b), q1_derivative, q3_derivative)
-    return Stress(out.q1, out.q3)
+    return StressMinusRestStress(out.q1, out.q3)

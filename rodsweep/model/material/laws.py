@@ -20,7 +20,8 @@ FloatOrArray = Any
 
 LARGEST_RUBBER_LOAD = 1e3
 """Largest load F/k1 of rubber, which compresses rubber to nu = 0.018 of its length. There the rounding error
-of 1 - nu is 6e-15 of nu. At F/k1 = 1e9 it is 6e-12: errors of eigenvalues were 400 times the stated ones."""
+of 1 - nu is 6e-15 of nu. At F/k1 = 1e9 this error is 6e-12 of nu, and errors of eigenvalues were 400 times
+the stated errors."""
 LARGEST_SWELLING_PULL = 1e50
 """Largest pull -F/k1 of swelling rubber. The sixth power of nu = 3 |F|/k1, which the law contains, overflows
 from 8e50 on."""
@@ -42,7 +43,8 @@ class Law:
     shortening: 1 - nu at the load x = F/k1, from W'(nu) = -x, without cancellation for small loads.
     crushing_load: the load x that crushes the rod; inf if no force crushes the rod. largest_accurate_load:
     largest load x at which nu = 1 - shortening has nearly all digits; inf if the rod is crushed before.
-    largest_pull: largest pull -x at which no function overflows; inf if any pull is allowed."""
+    largest_pull_without_overflow: largest pull -x at which no function overflows; inf if any pull is
+    allowed."""
 
     law_name: str
     """Name of the stress-strain law, the first part of a key of `LAWS`."""
@@ -59,7 +61,7 @@ class Law:
     shortening: Callable[[FloatOrArray], FloatOrArray]
     crushing_load: float = np.inf
     largest_accurate_load: float = np.inf
-    largest_pull: float = np.inf
+    largest_pull_without_overflow: float = np.inf
 
 
 def _neo_hookean_shortening(x: FloatOrArray) -> FloatOrArray:
@@ -125,7 +127,7 @@ SWELLING_CONSTITUTIVE_LAW = replace(
     bending_factor=lambda h: (1 + 2 / h**3) / (3 * h),
     bending_factor_slope=lambda h: -(1 + 8 / h**3) / (3 * h**2),
     bending_factor_second_derivative=lambda h: (2 / h**3 + 40 / h**6) / 3,
-    largest_pull=LARGEST_SWELLING_PULL,
+    largest_pull_without_overflow=LARGEST_SWELLING_PULL,
 )
 LAWS = {
     (law.law_name, law.section_name): law

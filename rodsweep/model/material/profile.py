@@ -17,10 +17,10 @@ from ...arrays import Array
 FACTOR_NAMES = ("k1", "k2", "k3", "gamma1", "gamma2", "gamma3")
 """Names of the stiffnesses and drags, in the order of the columns of a profile after the column u."""
 MIN_ROW_DISTANCE = 1e-6
-"""Smallest distance in u between two rows that are no jump. Of sixty random arms with two rows this close all
-spectra were solved; at 1e-7 no elements resolved eight of them."""
+"""Smallest distance in u between two rows that are no jump. All spectra of sixty random arms with two rows at
+this distance were solved; at 1e-7 no elements resolved eight of the arms."""
 ROW_DISTANCE_TOLERANCE = 1e-9
-"""Relative rounding error of a distance `MIN_ROW_DISTANCE` between two values of u, which is allowed for."""
+"""Allowed relative rounding error of a distance `MIN_ROW_DISTANCE` between two values of u."""
 RADIUS_POWERS = {"k1": 2, "k2": 2, "k3": 4, "gamma3": 2}
 """Exponents of the radius in the stiffnesses and drags of a cone; for missing names the exponent is 0."""
 
@@ -74,8 +74,8 @@ class Profile:
             is_finite = np.isfinite(self._cubic_coefficients).all()
         if not is_finite:
             raise ValueError(
-                f"the largest factor is {max(map(max, self.rows)):g}, and the factors between the rows "
-                "overflow; give smaller factors"
+                f"the largest factor is {max(map(max, self.rows)):g}, and interpolation between the rows "
+                "overflows; give smaller factors"
             )
 
     @cached_property
@@ -125,9 +125,9 @@ class Profile:
             rows.append(row[:column] + (factor,) + row[column + 1 :])
         return Profile(self.u, tuple(rows))
 
-    def minimum_points_between_rows(self, name: str, taper: float, limit: float) -> Array:
+    def candidate_minima_between_rows(self, name: str, taper: float, limit: float) -> Array:
         """Points u between rows, (points,), among them all minima of the stiffness or drag `name` of an arm
-        that are below `limit`. taper: tip radius over base radius of the arm."""
+        that are below `limit` times the value at the base. taper: tip radius over base radius of the arm."""
         column, exponent = FACTOR_NAMES.index(name), RADIUS_POWERS.get(name, 0)
         radii = relative_radius(taper, self.breaks)
         points = [np.empty(0)]
@@ -168,7 +168,7 @@ def relative_radius(taper: float, u: Any, remainder: Any = 0.0) -> Any:
     """Radius of a cone at points u, divided by the radius at the base, to nearly all digits.
 
     taper: tip radius over base radius. remainder: exact coordinates of the points minus u; near a thin tip
-    the rounding of u itself changes the radius. Both are numbers or arrays of one shape.
+    the rounding of u itself changes the radius. u and remainder are numbers or arrays of one shape.
     """
     # Both formulas add positive numbers only: the radius is summed from the thinner end.
     return taper + (1 - taper) * (1 - u - remainder) if taper < 1 else 1 + (taper - 1) * u

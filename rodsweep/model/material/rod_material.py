@@ -97,18 +97,18 @@ class RodMaterial:
         """Ends of the intervals of u on which coefficients are smooth, increasing from 0 to 1, (breaks,)."""
         return np.array([0.0, 1.0]) if self.profile is None else self.profile.breaks
 
-    def relative_crushing_force(self, taper: float) -> float:
+    def crushing_force_over_k1(self, taper: float) -> float:
         """Force that crushes the weakest section of an arm, divided by k1 at the base; inf if no force
         crushes the arm. taper: taper of the arm."""
         return self.constitutive_law.crushing_load * smallest_factor_along(self.profile, taper, "k1")
 
     def refuse_extreme_load(self, forces: Array | float, k1: float, taper: float) -> None:
         """Raises ValueError if a force compresses the weakest section beyond the law's
-        `largest_accurate_load`, or stretches it beyond the law's `largest_pull`. forces: a number, or
-        numbers, (n,). k1: stretch stiffness at the base. taper: tip radius over base radius."""
+        `largest_accurate_load`, or stretches it beyond the law's `largest_pull_without_overflow`. forces: a
+        number, or numbers, (n,). k1: stretch stiffness at the base. taper: tip radius over base radius."""
         law = self.constitutive_law
         weakest_k1 = smallest_factor_along(self.profile, taper, "k1") * k1
-        low, high = -law.largest_pull * weakest_k1, law.largest_accurate_load * weakest_k1
+        low, high = -law.largest_pull_without_overflow * weakest_k1, law.largest_accurate_load * weakest_k1
         if (F := np.max(forces)) > high:
             raise ValueError(
                 f"F = {F:.15g} is above {high:.15g}, {law.largest_accurate_load:g} times the stretch "
@@ -124,7 +124,7 @@ class RodMaterial:
     def force_over_crushing_force(self, F: float, k1: float, taper: float) -> float:
         """F divided by the force that crushes the weakest section; 0 if no force crushes the arm. k1: stretch
         stiffness at the base. taper: tip radius over base radius."""
-        return F / (k1 * self.relative_crushing_force(taper))
+        return F / (k1 * self.crushing_force_over_k1(taper))
 
     def relative_least_rotational_drag(self, taper: float) -> float:
         """Smallest rotational drag along an arm with the taper `taper`, divided by the drag at the base."""
@@ -135,10 +135,10 @@ class RodMaterial:
         """Smallest axial drag along an arm, divided by the drag at the base; the same for all tapers."""
         return smallest_factor_along(self.profile, 1.0, "gamma1")
 
-    def relative_crushing_forces(self, tapers: Array) -> Array:
-        """Result of `relative_crushing_force` for each of `tapers`, (...,), as an array of the same shape."""
+    def crushing_forces_over_k1(self, tapers: Array) -> Array:
+        """Result of `crushing_force_over_k1` for each of `tapers`, (...,), as an array of the same shape."""
         # One at a time, because each result is cached by its taper.
-        forces = [self.relative_crushing_force(taper) for taper in tapers.ravel().tolist()]
+        forces = [self.crushing_force_over_k1(taper) for taper in tapers.ravel().tolist()]
         return np.array(forces).reshape(tapers.shape)
 
     def local_coefficients(
@@ -170,8 +170,9 @@ class RodMaterial:
         return CrossSections(np.array([1 / k for k in stiffness.values()]), np.array(drag), nu)
 
     def relative_compliances(self, taper: float, u: Array) -> Array:
-        """Compliances of stretching, shear and bending at points u, (points,), divided by the compliances at
-        the base. Shape (3, points). The ratio is also defined for a rigid rod, of compliance 0."""
+        """Compliances of stretching, shear and bending at points u, (points,), of an arm with the taper
+        `taper`, divided by the compliances at the base, (3, points). The ratio is also defined if a
+        compliance is 0."""
         factors = factors_along(self.profile, taper, u)
         # A ratio of compliances at an infinite stiffness would be 0/0, but the factors alone give it.
         return np.array([1 / factors[name] for name in ("k1", "k2", "k3")])
@@ -179,9 +180,10 @@ class RodMaterial:
     def cross_section_derivatives(
         self, sections: CrossSections, F: float, taper: float, slopes: Mapping[str, float], u: Array
     ) -> CrossSections:
-        """Derivatives of the cross-sections `cross_sections_at` at points u, (points,), with respect to a
-        parameter. slopes: derivatives of F, of the taper, and of compliances and drags at the base with
-        respect to the parameter, by name; the derivative of a missing name is 0."""
+        """Derivatives of the properties of cross-sections at points u, (points,), with respect to a
+        parameter. sections: result of `cross_sections_at` for F and u. slopes: derivatives of F, of the
+        taper, and of compliances and drags at the base with respect to the parameter, by name; the derivative
+        of a missing name is 0."""
         factors = factors_along(self.profile, taper, u)
         compliance = np.zeros((3, *u.shape))
         drag = np.zeros((3, *u.shape))

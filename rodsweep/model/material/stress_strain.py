@@ -28,7 +28,7 @@ class LocalSection(NamedTuple):
     c3: float
 
 
-class Stress(NamedTuple):
+class StressMinusRestStress(NamedTuple):
     """Axial force N and bending moment M, minus their values at rest."""
 
     N: float
@@ -46,7 +46,7 @@ class TangentMatrix(NamedTuple):
 
 @compiled
 def bending_factor_and_derivatives(law: int, h: float) -> tuple[float, float, float]:
-    """Returns (B, B', B''): bending factor of the law number `law` at the stretch h, and derivatives."""
+    """Returns (B, B', B''): bending factor at the stretch h, and its derivatives. law: number of the law."""
     if law == SWELLING_SECTION_LAW_NUMBER:
         # The law is that of an incompressible rubber whose section shrinks as the rod is stretched.
         a = 1 / h
@@ -57,7 +57,7 @@ def bending_factor_and_derivatives(law: int, h: float) -> tuple[float, float, fl
 
 @compiled
 def shortening(law: int, x: float) -> float:
-    """1 - nu at the load x = F/k1 of the law number `law`, as `Law.shortening`."""
+    """Shortening 1 - nu at the load x = F/k1, for the law with the number `law`, see `Law.shortening`."""
     if law == LINEAR_LAW_NUMBER:
         return x
     if x < -MIN_ASYMPTOTIC_PULL:
@@ -85,21 +85,23 @@ def _neo_hookean_secant(nu: float, h: float) -> float:
 
 
 @compiled
-def stress_minus_rest_stress(law: int, material: LocalSection, q1: float, q3: float) -> Stress:
+def stress_minus_rest_stress(law: int, material: LocalSection, q1: float, q3: float) -> StressMinusRestStress:
     """Stresses N and M at one point, minus their values at rest, for the unknowns q1 and q3. law: number of
     the law. material: stretch at rest and compliances at the point."""
     if law == LINEAR_LAW_NUMBER:
-        return Stress(q1, q3)
+        return StressMinusRestStress(q1, q3)
     h = material.nu + material.c1 * q1
     # The energy of bending depends on the stretch, so a bent rod has an axial force from it.
     B, B1, _ = bending_factor_and_derivatives(law, h)
-    return Stress(q1 * _neo_hookean_secant(material.nu, h) + B1 * material.c3 * q3 * q3 / 2, B * q3)
+    return StressMinusRestStress(
+        q1 * _neo_hookean_secant(material.nu, h) + B1 * material.c3 * q3 * q3 / 2, B * q3
+    )
 
 
 @compiled
 def stress_tangent(law: int, material: LocalSection, q1: float, q3: float) -> TangentMatrix:
-    """Derivatives of the stresses N and M at one point by the unknowns q1 and q3. law: number of the law.
-    material: stretch at rest and compliances at the point."""
+    """Derivatives of the stresses N and M at one point with respect to the unknowns q1 and q3. law: number of
+    the law. material: stretch at rest and compliances at the point."""
     if law == LINEAR_LAW_NUMBER:
         return TangentMatrix(1.0, 0.0, 0.0, 1.0)
     h = material.nu + material.c1 * q1
@@ -117,11 +119,11 @@ def stress_tangent(law: int, material: LocalSection, q1: float, q3: float) -> Ta
 @compiled
 def stress_parameter_derivative(
     law: int, material: LocalSection, change: LocalSection, q1: float, q3: float
-) -> Stress:
+) -> StressMinusRestStress:
     """Derivatives of the stresses N and M with respect to a parameter, at fixed unknowns q1 and q3. change:
     derivatives of the fields of `material` with respect to the parameter. law: number of the law."""
     if law == LINEAR_LAW_NUMBER:
-        return Stress(0.0, 0.0)
+        return StressMinusRestStress(0.0, 0.0)
     h = material.nu + material.c1 * q1
     h_derivative = change.nu + change.c1 * q1
     a = 1 / material.nu
@@ -131,6 +133,6 @@ def stress_parameter_derivative(
     secant_h = -a * b * b * (a + 2 * b) / 3
     _, B1, B2 = bending_factor_and_derivatives(law, h)
     bending_part = q3 * q3 / 2 * (B2 * h_derivative * material.c3 + B1 * change.c3)
-    return Stress(
+    return StressMinusRestStress(
         q1 * (secant_nu * change.nu + secant_h * h_derivative) + bending_part, B1 * h_derivative * q3
     )

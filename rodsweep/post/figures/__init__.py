@@ -97,9 +97,9 @@ def draw(
     figure.
 
     shapes: function that computes the shapes of cycles if the file has no shapes. figure_callback: callback
-    for the finished figure; if given, no file is written. choices: content. Raises InputError for options
-    that do not fit the files and for files without a result that can be drawn, EnvironmentIncomplete if
-    `output` cannot be written or a program of the style, such as LaTeX, fails.
+    for the finished figure; if given, no file is written. choices: see `FigureChoices`. Raises InputError for
+    options that do not fit the files and for files without a result that can be drawn, and
+    EnvironmentIncomplete if `output` cannot be written or a program of the style, such as LaTeX, fails.
     """
     views = [views] if isinstance(views, ResultView) else views
     if look.width and choices.get("what") == "animation":

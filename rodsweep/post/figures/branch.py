@@ -112,7 +112,7 @@ def draw_straight_rod(axes: Axes, rod: RodBranches) -> None:
     [(start, end)] = uncrushed_ranges(rod.view, [rod.index])
     if rod.curves:
         end = min(end, 1.1 * max(float(np.nanmax(curve.parameter)) for curve in rod.curves))
-    for stable, ranges in zip((1, 0), rod.straight_rod_stability_ranges((start, end)), strict=True):
+    for stable, ranges in zip((1, 0), rod.straight_rod_stable_unstable_ranges((start, end)), strict=True):
         for low, high in ranges:
             axes.plot([low, high], [0, 0], STABILITY_LOOKS[stable][0], color=style.text_colour(), lw=1.4)
 
@@ -127,7 +127,8 @@ def add_stability_entries(axes: Axes, curves: Sequence[StoredBranch]) -> None:
 
 
 def _omissions_clause(rods: Sequence[RodBranches], cycling: int, drawn_count: int) -> str:
-    """Clause on branches and rods that the figure leaves out. cycling: number of rods with cycles."""
+    """Clause on branches and rods that the figure leaves out. cycling, drawn_count: numbers of rods with
+    cycles, and of drawn rods."""
     hidden = sum(rod.hidden_count for rod in rods)
     clause = ""
     if hidden:

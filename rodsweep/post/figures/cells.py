@@ -36,7 +36,7 @@ class PointGrid:
     """Values of the second parameter in increasing order, (ny,)."""
     point_indices: NDArray[np.intp]
     """Index in the file of the point in each cell, (ny, nx)."""
-    common_parameters: dict[str, float]
+    shared_parameters: dict[str, float]
     """Parameters that are equal at all points, by name."""
     omissions_clause: str
     """Clause on infinite values, which an axis cannot show; empty if all values are finite."""
@@ -126,7 +126,8 @@ def draw_coloured_cells(
     colours: str = "viridis",
     ratios: bool = True,
 ) -> None:
-    """Draws coloured cells with a colour bar. values: (ny, nx); a cell with NaN has no colour.
+    """Draws coloured cells with a colour bar. edges: (nx + 1,) and (ny + 1,). values: (ny, nx); a cell with
+    NaN has no colour. label: label of the colour bar. colours: name of the colour map.
 
     ratios: whether the colours are logarithmic if the values span more than a decade.
     """
@@ -158,8 +159,8 @@ def fill_cells(axes: Axes, edges: tuple[Array, Array], is_filled: NDArray[np.boo
 
 
 def new_map_panels(panel_count: int, is_stacked: bool, shares_y: bool = True) -> tuple[Figure, list[Axes]]:
-    """Returns (figure, panels) with `panel_count` panels that share axes, stacked or side by side. shares_y:
-    whether the panels share the vertical axis, too."""
+    """Returns (figure, panels) with `panel_count` panels that share axes. is_stacked: whether the panels are
+    stacked, not side by side. shares_y: whether the panels share the vertical axis, too."""
     # Side by side, the label of the first colour bar needs room.
     layout = ConstrainedLayoutEngine(wspace=0.0 if is_stacked else 0.06)
     size = (4.4, 3.1 * panel_count) if is_stacked else (4.8 * panel_count, 4.5)

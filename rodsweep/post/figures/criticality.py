@@ -24,10 +24,10 @@ from .cells import (
 )
 from .cycle.selection import shared_and_own_texts_of_points
 from .grid_slices import infinite_values_clause
-from .layout.layout_fitting import MAP_ASPECT
+from .layout.layout_fitting import MIN_MAP_ASPECT
 from .request import FigureRequest
 
-MAX_DRAWN_HOPF_DISTANCE = 0.1
+MAX_DRAWN_RELATIVE_HOPF_DISTANCE = 0.1
 """Predicted amplitudes are drawn up to this value of |F/F_H - 1| (F_H: Hopf point). At larger distances
 cycles deviate from the leading-order law."""
 PREDICTED_CYCLE_LOOKS = {
@@ -57,13 +57,15 @@ CRITICALITY_CLASSES = (
 """(legend entry, colour) of the classes of rods on a map, by the criticality of the Hopf points. Colour-blind
 readers can distinguish the colours, also in grey prints."""
 LINEAR_RANGE_QUANTILE = 0.1
-"""Fraction of the Hopf points whose Re c lies in the linear range of a symmetric logarithmic axis."""
+"""Quantile of |Re c| up to which a symmetric logarithmic axis is linear, before the limit is rounded down to
+a power of ten."""
 
 
 def draw_criticality(request: FigureRequest) -> str:
-    """Draws a map of the first Hopf points over two parameters, or the coefficients a and Re c against one
-    parameter, or else predicted amplitudes against F; returns a sentence. Raises InputError for options that
-    the task does not have, and if nothing can be drawn."""
+    """Draws a map of the first Hopf points over two parameters, or the amplitude coefficient a and Re c (c:
+    cubic coefficient of the normal form) against one parameter, or else predicted amplitudes against F;
+    returns a sentence. Raises InputError for options that the task does not have, and if nothing can be
+    drawn."""
     view = request.require_single_view()
     has_normal_form = np.isfinite(view.variables["criticality"]).any()
     style.require_content(view, has_normal_form, "Hopf point with a normal form")
@@ -78,7 +80,9 @@ def draw_criticality(request: FigureRequest) -> str:
     caption = (
         f"the normal form of the first Hopf point over {' and '.join(points.names)}{points.omissions_clause}"
     )
-    return request.write(_criticality_maps_figure(view, points, request.look.is_narrow), caption, MAP_ASPECT)
+    return request.write(
+        _criticality_maps_figure(view, points, request.look.is_narrow), caption, MIN_MAP_ASPECT
+    )
 
 
 def _coefficient_curves_figure(view: ResultView, name: str) -> Figure:
@@ -116,8 +120,8 @@ def _draw_hopf_markers(axes: Axes, x: Array, values: Array, criticality: Array) 
 
 
 def _criticality_maps_figure(view: ResultView, points: PointGrid, is_narrow: bool) -> Figure:
-    """Figure with two maps: criticality of the first Hopf points, and amplitude coefficient |a|. Raises
-    InputError if nothing can be drawn."""
+    """Figure with two maps: criticality of the first Hopf points, and amplitude coefficient |a|. is_narrow:
+    whether the maps are stacked. Raises InputError if nothing can be drawn."""
     criticality = view.flattened_by_point("criticality")[points.point_indices]
     amplitude_coefficient = np.abs(
         view.flattened_by_point("amplitude_coefficient")[:, 0][points.point_indices]
@@ -135,7 +139,7 @@ def _criticality_maps_figure(view: ResultView, points: PointGrid, is_narrow: boo
     label_maps(panels, points)
     drawn = (CRITICALITY_CLASSES[int(index)] for index in np.unique(classes))
     style.draw_shared_legend(figure, 3, [Patch(fc=colour, label=label) for label, colour in drawn])
-    set_heading(figure, view, style.parameter_text(points.common_parameters))
+    set_heading(figure, view, style.parameter_text(points.shared_parameters))
     return figure
 
 
@@ -163,7 +167,7 @@ def draw_predicted_amplitudes(view: ResultView) -> tuple[Figure, str]:
     figure = Figure(figsize=(5.6, 3.8), layout="constrained")
     axes = figure.subplots()
     common_text, rod_texts = shared_and_own_texts_of_points(view, [int(rod) + 1 for rod in drawn_rods])
-    distance = MAX_DRAWN_HOPF_DISTANCE * np.linspace(0, 1, PREDICTION_POINT_COUNT) ** 2
+    distance = MAX_DRAWN_RELATIVE_HOPF_DISTANCE * np.linspace(0, 1, PREDICTION_POINT_COUNT) ** 2
     for rod, colour in zip(drawn_rods, style.LINE_COLOURS, strict=False):
         for kind, hopf_force, size in zip(kinds[rod], F[rod], amplitude_coefficient[rod], strict=True):
             if np.isfinite(kind) and np.isfinite(size):
@@ -183,7 +187,8 @@ def draw_predicted_amplitudes(view: ResultView) -> tuple[Figure, str]:
         axes.plot([], [], color=colour, lw=2, label=text or None)
     style.draw_shared_legend(figure, column_count=3)
     figure.suptitle(style.heading_text(view, common_text))
-    caption = f"the cycles that normal forms predict within {MAX_DRAWN_HOPF_DISTANCE:.0%} of every Hopf point"
+    distance_text = f"{MAX_DRAWN_RELATIVE_HOPF_DISTANCE:.0%}"
+    caption = f"the cycles that normal forms predict within {distance_text} of every Hopf point"
     if len(drawn_rods) < rods_with_prediction.size:
         caption += f", of the first {len(drawn_rods)} of {rods_with_prediction.size} rods with Hopf points"
     return figure, caption

@@ -19,8 +19,9 @@ from .point_lists import DIMENSIONS_OTHER_THAN_POINTS
 TYPED_VALUE_TOLERANCE = 1e-6
 """A value typed by the user selects the values of the file that differ by at most this relative amount."""
 ARM_UNIT_VARIABLE_NAMES = ("tau2", "force_scale", "pressure_scale")
-"""Names of the units of an arm, which a file stores beside its quantities; no axes."""
-MAX_LISTED_VALUES = 8
+"""Names of the units of an arm, which a file stores beside the quantities of the arm; these units are no
+axes."""
+MAX_VALUES_LISTED_IN_ERROR = 8
 """Largest number of values that an error message lists."""
 
 
@@ -29,7 +30,7 @@ def slice_at_values(view: ResultView, typed_values: Mapping[str, float | str]) -
     name.
 
     The value of a quantity is a number in SI units, or a text with a unit. Raises InputError if no point has
-    a value; the message lists the values in the file.
+    one of the values; the message lists the values in the file.
     """
     for name, value in typed_values.items():
         view = _slice_at_value(view, name, _number_in_si(name, value))
@@ -103,9 +104,9 @@ def _not_an_axis_predicate(view: ResultView, name: str, axes: Sequence[str]) -> 
 
 
 def _values_text(values: np.ndarray, requested: float) -> str:
-    """The increasing values of an axis as text; of more than MAX_LISTED_VALUES values, the first and the last
-    value and the two values around `requested`."""
-    if len(values) <= MAX_LISTED_VALUES:
+    """The increasing values of an axis as text; of more than MAX_VALUES_LISTED_IN_ERROR values, the first and
+    the last value and the two values around `requested`."""
+    if len(values) <= MAX_VALUES_LISTED_IN_ERROR:
         return ", ".join(f"{value:.15g}" for value in values)
     next_index = int(np.clip(np.searchsorted(values, requested), 1, len(values) - 1))
     nearest_text = " and ".join(f"{value:.15g}" for value in values[next_index - 1 : next_index + 1])
@@ -149,8 +150,8 @@ def infinite_values_clause(columns: Mapping[str, np.ndarray], names: Sequence[st
 
 
 def checked_slice_values(section_values: Mapping[str, float | str]) -> dict[str, float | str]:
-    """Copy of the values that a Python caller gives, by name of the parameter. Raises InputError for a value
-    that is neither a number nor a text."""
+    """Copy of the values that a Python caller gives, by name of the parameter: numbers as floats, texts
+    unchanged. Raises InputError for a value that is neither a number nor a text."""
     try:
         return {
             str(name): value if isinstance(value, str) else float(value)

@@ -21,7 +21,7 @@ from .cycle.selection import (
 )
 from .cycle.shapes_and_tip_motion import draw_shapes_and_tip_motion
 from .cycle.transient import draw_transients
-from .layout.layout_fitting import MAP_ASPECT, MIN_TIME_PANEL_ASPECT
+from .layout.layout_fitting import MIN_MAP_ASPECT, MIN_TIME_PANEL_ASPECT
 from .request import FIGURE_KINDS_BY_TASK, FigureRequest
 
 ALL_POINT_FIGURE_NOUNS = {"amplitude": "amplitudes", "maps": "maps"}
@@ -32,17 +32,21 @@ NEEDED_VARIABLES = {
     "energy": ENERGY_BUDGET_VARIABLE_NAMES,
 }
 """Variables of a cycle that are necessary for a figure, by kind of figure."""
-FEW_POINT_FIGURES = {"cycle": draw_shapes_and_tip_motion, "energy": draw_energy, "transient": draw_transients}
+FEW_POINT_DRAW_FUNCTIONS = {
+    "cycle": draw_shapes_and_tip_motion,
+    "energy": draw_energy,
+    "transient": draw_transients,
+}
 """For each kind of figure that shows a few points, the function that draws the figure."""
 
 
 def draw_limit_cycle(request: FigureRequest) -> str:
     """Draws the figure of one file or the amplitudes of several files, or writes an animation; returns a
-    sentence. If the file lacks variables that the figure needs, `request.shapes`, if given, solves the cycles
-    again. Raises InputError for options that do not match the files, and if nothing can be drawn."""
+    sentence. If the file lacks variables that the figure needs, `request.shape_solver`, if given, solves the
+    cycles again. Raises InputError for options that do not match the files, and if nothing can be drawn."""
     points = request.points
     name = chosen_figure_kind(request)
-    view = _with_needed_variables(request, name)
+    view = _view_with_needed_variables(request, name)
     if name == "animation":
         request.require_output(*FILM_SUFFIXES)
         if request.figure_callback is not None:
@@ -52,15 +56,15 @@ def draw_limit_cycle(request: FigureRequest) -> str:
     if name == "amplitude":
         return request.write(*draw_amplitude(request.views, request.look.is_narrow))
     if name == "maps":
-        return request.write(*draw_maps(view, request.look.is_narrow), MAP_ASPECT)
+        return request.write(*draw_maps(view, request.look.is_narrow), MIN_MAP_ASPECT)
     return request.write(
-        *FEW_POINT_FIGURES[name](view, points, request.look.is_narrow), MIN_TIME_PANEL_ASPECT
+        *FEW_POINT_DRAW_FUNCTIONS[name](view, points, request.look.is_narrow), MIN_TIME_PANEL_ASPECT
     )
 
 
-def _with_needed_variables(request: FigureRequest, name: str) -> ResultView:
+def _view_with_needed_variables(request: FigureRequest, name: str) -> ResultView:
     """View of the file with the variables that the figure `name` needs. If variables are missing,
-    `request.shapes`, if given, computes them."""
+    `request.shape_solver`, if given, computes the missing variables."""
     view = request.views[0]
     if request.shape_solver is None or view.variables.keys() >= set(NEEDED_VARIABLES.get(name, ())):
         return view
@@ -78,7 +82,7 @@ def chosen_figure_kind(request: FigureRequest) -> str:
             request.refuse_figure_options(view)
     name = request.what or _default_figure_kind(request)
     if name not in FIGURE_KINDS_BY_TASK["limit_cycle"]:
-        request.refuse_points(first_view)
+        request.refuse_points_and_other_kinds(first_view)
     if other_views and name != "amplitude":
         raise InputError(f"--what {name} draws a single file; only amplitudes of several files form a figure")
     if request.points and name in ALL_POINT_FIGURE_NOUNS:

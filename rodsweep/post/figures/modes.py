@@ -58,8 +58,8 @@ def draw_modes(request: FigureRequest) -> str:
 
 
 def _draw_mode_fields(panel: Axes, view: ResultView, point: int, fields: tuple[tuple[str, str], ...]) -> None:
-    """Draws two fields of the leading mode against u, with separate vertical axes that have 0 at the same
-    height. fields: (field, label) of the two fields."""
+    """Draws two fields of the leading mode at the point with the index `point` against u, with separate
+    vertical axes that have 0 at the same height. fields: (field, label) of the two fields."""
     u = view.variables["u"]
     twins = panel, panel.twinx()
     limits = []

@@ -18,7 +18,7 @@ from . import style
 from .arm.quantities import set_heading
 from .arm.validity_hatches import hatch_compressed
 from .grid_slices import infinite_values_clause
-from .layout.layout_fitting import MAP_ASPECT
+from .layout.layout_fitting import MIN_MAP_ASPECT
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT, CLASS_PALETTE, STABLE_STATE_PALETTE, Palette
 from .stability.diagram_curves import (
@@ -31,8 +31,8 @@ from .stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_
 from .stability.row_classes import classes_between_crossings, pixel_classes_of_row
 
 CURVE_END_CRUSHING_RATIO = 1 - 3e-3
-"""Curves of a file may end at this ratio of force to crushing force; rods with larger ratios bound regions as
-curves do."""
+"""Curves of a file may end at this ratio of force to crushing force. The part of the diagram with larger
+ratios therefore bounds regions as curves do."""
 
 
 def draw_phase_diagram(request: FigureRequest) -> str:
@@ -65,7 +65,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     axes.imshow(pixels, interpolation="nearest", origin="lower", **unit, **palette.colour_keywords)
     style.scale_axis(axes, "x", x)
     style.scale_axis(axes, "y", y)
-    _draw_crushing(axes, ratio, *pixel_coordinates)
+    _draw_crushing_line(axes, ratio, *pixel_coordinates)
     areas = [*palette.legend_entries(pixels), *hatch_compressed(axes, view, ratio, *pixel_coordinates)]
     axes.set(
         xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=style.AXIS_LABELS[line], ylabel=style.AXIS_LABELS[row]
@@ -77,7 +77,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     missing_clause = "; curves are missing, the file is not finished" if lacks_curves else ""
     infinite_clause = infinite_values_clause(view.parameter_values, [row])
     return request.write(
-        figure, f"behaviour of the rod over {line} and {row}{missing_clause}{infinite_clause}", MAP_ASPECT
+        figure, f"behaviour of the rod over {line} and {row}{missing_clause}{infinite_clause}", MIN_MAP_ASPECT
     )
 
 
@@ -102,7 +102,7 @@ def _constant_parameters_text(view: ResultView, parameters: PlaneParameters) -> 
     return style.parameter_text(fixed)
 
 
-def _draw_crushing(axes: Axes, ratio: Array, x: Array, y: Array) -> None:
+def _draw_crushing_line(axes: Axes, ratio: Array, x: Array, y: Array) -> None:
     """Draws the line on which the force begins to crush the rod. ratio: force divided by the crushing force
     at x and y, (pixels, pixels). x, y: coordinates, (pixels,)."""
     if ratio.min() < 1 < ratio.max():

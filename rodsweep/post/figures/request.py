@@ -39,9 +39,9 @@ METRES_PER_INCH = 0.0254
 """Length of an inch, in metres."""
 NARROW_WIDTH = 5.0
 """The panels of a figure are stacked if the figure is narrower than this width, in inches."""
-MIN_WIDTH = 2.5
+MIN_WIDTH_IN_INCHES = 2.5
 """Smallest width of a figure, in inches. In a narrower figure labels would be wider than panels."""
-MAX_WIDTH = 20.0
+MAX_WIDTH_IN_INCHES = 20.0
 """Largest width of a figure, in inches."""
 
 
@@ -81,7 +81,7 @@ class FigureLook:
 
 def _width_in_inches(width: str) -> float:
     """Width in inches, from a name in COLUMN_WIDTHS or a length with a unit. Raises InputError for another
-    text, and for a width outside MIN_WIDTH to MAX_WIDTH."""
+    text, and for a width outside MIN_WIDTH_IN_INCHES to MAX_WIDTH_IN_INCHES."""
     if isinstance(width, str) and width in COLUMN_WIDTHS:
         return COLUMN_WIDTHS[width]
     message = (
@@ -92,8 +92,8 @@ def _width_in_inches(width: str) -> float:
         inches = quantity_in_si("width", width, "m", "89 mm") / METRES_PER_INCH
     except InputError:
         raise InputError(message) from None
-    if not MIN_WIDTH <= inches <= MAX_WIDTH:
-        low, high = (1e3 * METRES_PER_INCH * limit for limit in (MIN_WIDTH, MAX_WIDTH))
+    if not MIN_WIDTH_IN_INCHES <= inches <= MAX_WIDTH_IN_INCHES:
+        low, high = (1e3 * METRES_PER_INCH * limit for limit in (MIN_WIDTH_IN_INCHES, MAX_WIDTH_IN_INCHES))
         raise InputError(f"{message}, from {low:.0f} to {high:.0f} mm")
     return inches
 
@@ -124,15 +124,16 @@ class FigureRequest:
         return self.views[0]
 
     def refuse_figure_options(self, view: ResultView, kinds: Sequence[str] = ()) -> None:
-        """Raises InputError for options that the task of `view` does not have, and for several files."""
-        self.refuse_points(view, kinds)
+        """Raises InputError for options that the task of `view` does not have, and for several files. kinds:
+        allowed values of --what."""
+        self.refuse_points_and_other_kinds(view, kinds)
         if self.views[1:]:
             raise InputError(
                 f"{view.path} is a result of the task {view.task}; only results of limit_cycle, spectrum or "
                 "thresholds can share a figure"
             )
 
-    def refuse_points(self, view: ResultView, kinds: Sequence[str] = ()) -> None:
+    def refuse_points_and_other_kinds(self, view: ResultView, kinds: Sequence[str] = ()) -> None:
         """Raises InputError for chosen points, and for a value of --what that is not in `kinds`."""
         if self.points:
             raise InputError(
@@ -158,10 +159,8 @@ class FigureRequest:
             )
 
     def write(self, figure: Figure, caption: str, min_aspect: float = MIN_ASPECT) -> str:
-        """Writes the figure, with second scales and hatches for an arm; returns `caption`, the
-        description of the figure. min_aspect: smallest ratio of height to width of a panel.
-
-        """
+        """Writes the figure, with second scales and hatches for an arm; returns `caption`, the description of
+        the figure. min_aspect: smallest ratio of height to width of a panel."""
         add_arm_scales(figure, self.views)
         # Figures over an arm's quantities show the validity themselves.
         if not any(view.arm_axes for view in self.views):

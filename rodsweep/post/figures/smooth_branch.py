@@ -15,23 +15,27 @@ MIRRORED_CYCLE_COUNT = 3
 point."""
 MIRROR_FACTORS = np.array([1.0, -1.0, 1.0])
 """Factors of (parameter, y, log period) that turn a cycle into its mirror image."""
-CHORD_WEIGHTS = np.array([0.5, 1.0, 1.0])
+CHORD_LENGTH_WEIGHTS = np.array([0.5, 1.0, 1.0])
 """Weights of parameter, y and log period in the length of a chord; the three coordinates are divided by their
 ranges on the branch."""
-CHORD_WEIGHTS_WITHOUT_Y = np.array([1.0, 0.0, 1.0])
+CHORD_LENGTH_WEIGHTS_WITHOUT_Y = np.array([1.0, 0.0, 1.0])
 """Weights of parameter, y and log period in the length of a chord that ignores y."""
-CHORD_LENGTH_CANDIDATES = ((CHORD_WEIGHTS, 1.0), (CHORD_WEIGHTS, 0.5), (np.array([0.1, 1.0, 0.1]), 1.0))
+INTERPOLATION_VARIABLE_CANDIDATES = (
+    (CHORD_LENGTH_WEIGHTS, 1.0),
+    (CHORD_LENGTH_WEIGHTS, 0.5),
+    (np.array([0.1, 1.0, 0.1]), 1.0),
+)
 """(weights, power) of the candidates for the variable of the interpolation: sums of the chord lengths to this
 power. The arc length (power 1) is best on most branches, the sum of square roots where steps grow at a bend.
 A length close to y is best on a branch that ends near its Hopf point, where parameter and period are
 quadratic in y."""
-CORNER_CYCLE_COUNT = 4
+CYCLES_ON_EACH_SIDE_OF_CORNER = 4
 """Number of cycles on each side of a corner in the polynomials that locate the corner; fewer near an end of
 the branch."""
-MIN_SLOPE_JUMP = 0.25
+MIN_RELATIVE_SLOPE_JUMP = 0.25
 """A jump of the slope is drawn as a corner if the jump exceeds this fraction of the steepest chord near the
 corner. A smaller jump changes the curve by at most a few per cent of the chord."""
-MIN_Y_SLOPE_JUMP_RATIO = 3.0
+MIN_Y_SLOPE_JUMP_OVER_OTHER_JUMPS = 3.0
 """At a corner, the jump of the slope of y exceeds this multiple of the jumps of the slopes of parameter and
 log period, which are smooth there. At a sharp bend that the cycles do not resolve, all three jumps are
 similar."""
@@ -43,8 +47,8 @@ SEGMENTS_BETWEEN_CYCLES = 12
 
 
 def smooth_curve_of_branch(curve: StoredBranch) -> tuple[Array, Array, Array, NDArray[np.integer]]:
-    """Returns (parameter, y, period, stable) of the smooth curve through the cycles of a branch; (n,) each,
-    `stability` (n - 1,).
+    """Returns (parameter, y, period, stability) of the smooth curve through the cycles of a branch:
+    parameter, y and period at the vertices, (n,) each, and stability between vertices, (n - 1,).
 
     The branch has a corner where a different maximum of y(t) becomes the largest maximum; the curve is smooth
     between corners.
@@ -64,12 +68,12 @@ def smooth_curve_of_branch(curve: StoredBranch) -> tuple[Array, Array, Array, ND
         stable = np.insert(stable, i, stable[i])
     corner_indices = [i + 1 + k for k, i in enumerate(sorted(corners))]
     ends = pairwise([0, *corner_indices, len(cycles) - 1])
-    parts = [_smooth_vertices(cycles[low : high + 1], extent) for low, high in ends]
+    parts = [_vertices_of_smooth_curve(cycles[low : high + 1], extent) for low, high in ends]
     values, y, log_period = np.concatenate([*(part[:-1] for part in parts), parts[-1][-1:]]).T
     return values, y, np.exp(log_period), np.repeat(stable, SEGMENTS_BETWEEN_CYCLES)
 
 
-def _smooth_vertices(cycles: Array, extent: Array) -> Array:
+def _vertices_of_smooth_curve(cycles: Array, extent: Array) -> Array:
     """Vertices, (m, 3), of a smooth curve through the cycles `cycles`, (n, 3), with SEGMENTS_BETWEEN_CYCLES
     segments between two cycles. Columns: parameter, y, log period. extent: ranges of the branch, (3,). At a
     Hopf point the branch is symmetric under y to -y. Mirror images of cycles, beyond the Hopf point,
@@ -79,7 +83,9 @@ def _smooth_vertices(cycles: Array, extent: Array) -> Array:
     first_index = len(cycles_before) if cycles[0, 1] == 0 else 0
     last_count = len(cycles_after) if cycles[-1, 1] == 0 else 0
     extended = np.concatenate([cycles_before[:first_index], cycles, cycles_after[:last_count]])
-    variables = [_cumulative_chord_lengths(extended, extent, *choice) for choice in CHORD_LENGTH_CANDIDATES]
+    variables = [
+        _cumulative_chord_lengths(extended, extent, *choice) for choice in INTERPOLATION_VARIABLE_CANDIDATES
+    ]
     abscissa = min(variables, key=lambda variable: _largest_cubic_deviation(variable, extended / extent))
     ends = abscissa[first_index : first_index + len(cycles)]
     drawn = np.linspace(ends[:-1], ends[1:], SEGMENTS_BETWEEN_CYCLES, endpoint=False, axis=1).ravel()
@@ -97,10 +103,10 @@ def corners_by_previous_cycle(cycles: Array, extent: Array) -> dict[int, Array]:
     polynomials is the arc length of (parameter, log period), which is smooth. Of candidates on neighbouring
     intervals, the candidate with the largest change of slope is the corner.
     """
-    lengths = _cumulative_chord_lengths(cycles * CHORD_WEIGHTS_WITHOUT_Y, extent)
+    lengths = _cumulative_chord_lengths(cycles * CHORD_LENGTH_WEIGHTS_WITHOUT_Y, extent)
     candidates: dict[int, tuple[float, Array]] = {}
     for i in range(1, len(cycles) - 2):
-        window = slice(max(0, i + 1 - CORNER_CYCLE_COUNT), i + 1 + CORNER_CYCLE_COUNT)
+        window = slice(max(0, i + 1 - CYCLES_ON_EACH_SIDE_OF_CORNER), i + 1 + CYCLES_ON_EACH_SIDE_OF_CORNER)
         if (np.diff(lengths[window]) == 0).any():
             continue  # y alone changes, which a jump between two maxima does not do
         x = (lengths[window] - lengths[i]) / (lengths[i + 1] - lengths[i])
@@ -110,8 +116,8 @@ def corners_by_previous_cycle(cycles: Array, extent: Array) -> dict[int, Array]:
             is_between = abs(root.imag) < BRANCH_ROUNDING_TOLERANCE and 0 < root.real < 1
             if (
                 is_between
-                and slope_jumps[1] > MIN_SLOPE_JUMP
-                and slope_jumps[1] > MIN_Y_SLOPE_JUMP_RATIO * max(map(abs, slope_jumps[::2]))
+                and slope_jumps[1] > MIN_RELATIVE_SLOPE_JUMP
+                and slope_jumps[1] > MIN_Y_SLOPE_JUMP_OVER_OTHER_JUMPS * max(map(abs, slope_jumps[::2]))
             ):
                 interpolate = scipy.interpolate.barycentric_interpolate
                 corner = interpolate(x, cycles[window], root.real)
@@ -124,7 +130,7 @@ def corners_by_previous_cycle(cycles: Array, extent: Array) -> dict[int, Array]:
         == max(
             candidates[corner_index][0]
             for corner_index in candidates
-            if abs(corner_index - i) < CORNER_CYCLE_COUNT
+            if abs(corner_index - i) < CYCLES_ON_EACH_SIDE_OF_CORNER
         )
     }
 
@@ -138,7 +144,7 @@ def _difference_of_one_sided_polynomials(x: Array, values: Array) -> Polynomial:
 
 
 def _cumulative_chord_lengths(
-    points: Array, extent: Array, weights: Array = CHORD_WEIGHTS, power: float = 1.0
+    points: Array, extent: Array, weights: Array = CHORD_LENGTH_WEIGHTS, power: float = 1.0
 ) -> Array:
     """Sum of the chord lengths to the power `power`, from the first point to each point, (n,). points:
     points, (n, 3). extent: ranges of the branch, (3,). weights: weights of the coordinates, (3,)."""
@@ -147,8 +153,8 @@ def _cumulative_chord_lengths(
 
 
 def _largest_cubic_deviation(s: Array, points: Array) -> float:
-    """Largest deviation, in a coordinate, of a point from the cubic through two neighbours on each side of
-    the point. s: variable, (n,). points: points, (n, columns)."""
+    """Largest deviation, among all points and coordinates, of a point from the cubic polynomial through two
+    neighbours on each side of the point. s: variable, (n,). points: points, (n, columns)."""
     deviations = []
     for i in range(2, len(s) - 2):
         neighbours = [i - 2, i - 1, i + 1, i + 2]

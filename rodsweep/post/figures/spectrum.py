@@ -13,7 +13,7 @@ from ...results.file.view import ResultView
 from . import style
 from .arm.quantities import set_heading
 from .grid_slices import infinite_values_clause, slice_at_values, without_infinite_values
-from .layout.layout_fitting import MAP_ASPECT
+from .layout.layout_fitting import MIN_MAP_ASPECT
 from .point_lists import as_grid_if_possible
 from .request import FigureRequest
 from .spectra.eigenvalues import draw_eigenvalues, draw_list_of_spectra
@@ -23,7 +23,7 @@ from .spectra.spectra_along_line import (
     draw_roots_against_parameter,
     draw_spectra_along_line,
     mark_thresholds,
-    threshold_text,
+    threshold_symbol_and_force,
 )
 
 MAX_PANELS = 12
@@ -73,13 +73,14 @@ def draw_spectrum(request: FigureRequest) -> str:
         )
     _refuse_roots(view, request.roots, "a map of the leading growth rate; --at draws one of its lines")
     return request.write(
-        _growth_map(view, varied_names), f"the leading growth rate{omissions_clause}", MAP_ASPECT
+        _growth_map(view, varied_names), f"the leading growth rate{omissions_clause}", MIN_MAP_ASPECT
     )
 
 
 def _refuse_roots(view: ResultView, roots: str | None, figure: str, allowed: Sequence[str] = ()) -> None:
-    """Raises InputError if `--roots` is given for a figure that ignores it, because it does not follow roots
-    along a line. allowed: choices that are accepted. figure: noun for the figure of `view`."""
+    """Raises InputError if `--roots` is given for a figure that ignores this option, because the figure does
+    not follow roots along a line. allowed: choices that are accepted. figure: noun for the figure of
+    `view`."""
     if roots not in (None, *allowed):
         raise InputError(
             f"{view.path}: --roots {roots} is for spectra along a line of points, and this is {figure}"
@@ -102,25 +103,25 @@ def _draw_line_panels(views: Sequence[ResultView], request: FigureRequest, panel
     """Draws a panel for each view, a line of spectra; returns a sentence. panel_noun: noun for a view, and a
     clause on what is left out."""
     roots = choice_of_followed_roots(views, request.roots)
-    figure = draw_panels(views, roots, request.look.is_narrow)
+    figure = draw_root_panels(views, roots, request.look.is_narrow)
     return request.write(figure, f"{ROOT_CHOICE_TEXTS[roots]}, in a panel for each {panel_noun}")
 
 
 def _draw_files(request: FigureRequest) -> str:
     """Draws a panel for each file; returns a sentence. Raises InputError if a file is not a line of
     spectra."""
-    request.refuse_points(request.views[0])
+    request.refuse_points_and_other_kinds(request.views[0])
     request.require_output()
     if len(request.views) > MAX_PANELS:
         room_clause = f"but a figure has room for {MAX_PANELS}; give fewer files"
         raise InputError(f"{len(request.views)} files are given, {room_clause}")
-    views = [_line_of_spectra(view, request) for view in request.views]
+    views = [_view_of_spectra_line(view, request) for view in request.views]
     grids = map(as_grid_if_possible, request.views)
     omissions = [infinite_values_clause(grid.parameter_values, style.varied_axes(grid)) for grid in grids]
     return _draw_line_panels(views, request, f"of {len(views)} files{max(omissions, key=len)}")
 
 
-def _line_of_spectra(view: ResultView, request: FigureRequest) -> ResultView:
+def _view_of_spectra_line(view: ResultView, request: FigureRequest) -> ResultView:
     """View of a file as a line of spectra, without infinite parameters. Raises InputError if the file is not
     a line of spectra."""
     if view.task != request.views[0].task:
@@ -173,8 +174,8 @@ def _growth_map(view: ResultView, names: list[str]) -> Figure:
     return figure
 
 
-def draw_panels(views: Sequence[ResultView], roots: str, is_narrow: bool) -> Figure:
-    """Figure with a panel of roots for each view, and one legend."""
+def draw_root_panels(views: Sequence[ResultView], roots: str, is_narrow: bool) -> Figure:
+    """Figure with a panel of roots for each view. roots: choice of roots. is_narrow: panels in one column."""
     column_count = 1 if is_narrow else 2
     row_count = -(-len(views) // column_count)
     figure_size = (
@@ -187,7 +188,7 @@ def draw_panels(views: Sequence[ResultView], roots: str, is_narrow: bool) -> Fig
         (name,) = style.varied_axes(view)
         draw_roots_against_parameter(panel, view, name, roots)
         thresholds = mark_thresholds(panel, view, name, has_own_legend=False)
-        threshold_texts = ", ".join(map(threshold_text, thresholds))
+        threshold_texts = ", ".join(map(threshold_symbol_and_force, thresholds))
         text = style.heading_text(view, style.constant_parameters_text(view, name), threshold_texts)
         panel.set_title(f"({letter})  {text}", loc="left")
     for panel in panels[len(views) :]:

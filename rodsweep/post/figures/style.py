@@ -48,7 +48,8 @@ tick labels, because 1, 2 and 5 could all lie outside the axis."""
 MIN_ABS_EXPONENT_OF_BARE_POWER = 2
 """Smallest |n| for which a power of ten is written as 10^n."""
 MIN_EXPONENT_OF_POWER_NOTATION = 4
-"""Numbers below 10 to this power are written without a power of ten."""
+"""Numbers from 0.01 to 10 to this power are written without a power of ten; exact powers of ten follow
+MIN_ABS_EXPONENT_OF_BARE_POWER."""
 FIGURE_STYLE = {
     "font.size": 10,
     "axes.titlesize": 9,

@@ -10,7 +10,7 @@ from ...results.file.view import ResultView
 from . import style
 from .arm.quantities import set_heading
 from .cells import draw_coloured_cells, label_maps, new_map_panels, point_grid
-from .layout.layout_fitting import MAP_ASPECT, MIN_ASPECT
+from .layout.layout_fitting import MIN_ASPECT, MIN_MAP_ASPECT
 from .point_lists import as_grid_if_possible
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT, draw_class_bars
@@ -54,7 +54,7 @@ def draw_thresholds(request: FigureRequest) -> str:
     if request.what == "map" or (len(varied_names) == 2 and not has_few_lines and request.what != "lines"):
         figure, omissions = _threshold_maps(view, drawable_names, request.look.is_narrow)
         return request.write(
-            figure, f"critical forces over {' and '.join(varied_names)}{omissions}", MAP_ASPECT
+            figure, f"critical forces over {' and '.join(varied_names)}{omissions}", MIN_MAP_ASPECT
         )
     search_clause = searched_range_clause(view)
     if len(varied_names) == 1 or has_few_lines:
@@ -68,10 +68,10 @@ def _draw_files(request: FigureRequest) -> str:
     """Draws the thresholds of several files against the parameter that varies in all files; returns a
     sentence. Raises InputError for too many files, for unsuitable options, and unless the files have one task
     and vary in one common parameter only."""
-    request.refuse_points(request.views[0], ("lines",))
+    request.refuse_points_and_other_kinds(request.views[0], ("lines",))
     request.require_output()
     views = request.views
-    # A list over an arm's quantities has many.
+    # A list over an arm's quantities may vary more parameters than `varied_axes` allows.
     names = style.varied_axes(views[0]) if views[0].is_grid else []
     if len(views) > len(FILE_COLOURS):
         raise InputError(
@@ -101,8 +101,8 @@ def searched_range_clause(*views: ResultView) -> str:
 
 def _threshold_maps(view: ResultView, names: list[str], is_narrow: bool) -> tuple[Figure, str]:
     """Returns (figure, omissions). The figure has a map over two parameters for each kind of threshold in
-    `names`. omissions: clause on infinite values of the parameters. Raises InputError if nothing can be
-    drawn."""
+    `names`. omissions: clause on infinite values of the parameters. is_narrow: whether the maps are stacked.
+    Raises InputError if nothing can be drawn."""
     points = point_grid(view)
     figure, panels = new_map_panels(len(names), is_narrow)
     lacking = False
@@ -116,6 +116,6 @@ def _threshold_maps(view: ResultView, names: list[str], is_narrow: bool) -> tupl
     label_maps(panels, points)
     if lacking:
         style.draw_shared_legend(figure, 1, [Patch(fc=NO_THRESHOLD_COLOUR, label="none found")])
-    constants_text = style.parameter_text(points.common_parameters)
+    constants_text = style.parameter_text(points.shared_parameters)
     set_heading(figure, view, constants_text, searched_range_clause(view))
     return figure, points.omissions_clause

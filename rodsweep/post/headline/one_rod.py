@@ -9,7 +9,7 @@ from ...results.file.view import ResultView
 from ...results.layouts import layout_of
 from ...results.layouts.si_variables import si_variables_of
 from ..summary.number_texts import error_text, number_and_error_texts, rounded_text
-from ..summary.variable_errors import ABSOLUTE_ERROR_NAMES, RELATIVE_ERROR_NAMES, absolute_errors
+from ..summary.variable_errors import ABSOLUTE_ERROR_NAMES, RELATIVE_ERROR_NAME_BY_VARIABLE, absolute_errors
 from ..tables.column import Column
 from ..tables.table_names import POINTS_TABLE
 from ..tables.tables import Tables
@@ -42,19 +42,22 @@ class ColumnTexts:
     def _numbers(column: Column) -> Array:
         return np.where(column.missing_mask, np.nan, column.values.astype(float))
 
-    def absolute_error(self, name: str) -> Array:
+    def absolute_errors(self, name: str) -> Array:
         """Absolute error of the variable `name`, (rows,); NaN where the error is unknown."""
         error_text = self._base.get(name)
         if error_text in self.columns:
             with np.errstate(divide="ignore", invalid="ignore"):
-                return self.absolute_error(error_text) * np.abs(self._values[name] / self._values[error_text])
+                return self.absolute_errors(error_text) * np.abs(
+                    self._values[name] / self._values[error_text]
+                )
         if name in VARIABLES_WITHOUT_ERROR:
             return np.zeros_like(self._values[name])
         if name in self._other_errors:
             return self._other_errors[name]
         errors = absolute_errors(self._values, name)
         has_error = any(
-            table.get(name, "") in self.columns for table in (RELATIVE_ERROR_NAMES, ABSOLUTE_ERROR_NAMES)
+            table.get(name, "") in self.columns
+            for table in (RELATIVE_ERROR_NAME_BY_VARIABLE, ABSOLUTE_ERROR_NAMES)
         )
         return errors if has_error else np.where(errors > 0, errors, np.nan)
 
@@ -65,26 +68,26 @@ class ColumnTexts:
         if column.is_boolean:
             return [(BOOLEAN_WORDS[int(value)], "") for value in column.values]
         if column.flag_meanings or column.values.dtype.kind != "f":
-            return [(text, "") for text in column.texts()]
+            return [(text, "") for text in column.csv_texts()]
         if column.is_estimate:
-            stated_error = self._values[name] + self._rounding_errors(name)
+            stated_error = self._values[name] + self._rounding_errors_of_printed_values(name)
             texts = (error_text(float(value)) if value else "0" for value in stated_error)
             return [
                 ("" if no_text else text, "")
                 for text, no_text in zip(texts, column.missing_mask, strict=True)
             ]
-        rows = zip(self._values[name], self.absolute_error(name), column.missing_mask, strict=True)
+        rows = zip(self._values[name], self.absolute_errors(name), column.missing_mask, strict=True)
         return [
             ("", "") if no_text else number_and_error_texts(float(x), float(error))
             for x, error, no_text in rows
         ]
 
-    def _rounding_errors(self, error: str) -> Array:
+    def _rounding_errors_of_printed_values(self, error: str) -> Array:
         """Rounding errors, (rows,), of the printed values to which the error variable `error` belongs;
         relative if `error` is relative. If `error` belongs to several variables, the largest rounding error.
         """
         largest_rounding = np.zeros_like(self._values[error])
-        for table, relative in ((ABSOLUTE_ERROR_NAMES, False), (RELATIVE_ERROR_NAMES, True)):
+        for table, relative in ((ABSOLUTE_ERROR_NAMES, False), (RELATIVE_ERROR_NAME_BY_VARIABLE, True)):
             for name in (
                 name_with_error
                 for name_with_error, own_error in table.items()
@@ -105,7 +108,7 @@ class ColumnTexts:
         """Value of the variable `name` in the given row as text: at most six digits, with the unit."""
         column = self.columns[name]
         value = float(self._values[name][row])
-        error = float(np.nan_to_num(self.absolute_error(name)[row]))
+        error = float(np.nan_to_num(self.absolute_errors(name)[row]))
         return f"{rounded_text(value, error)} {'' if column.unit == '1' else column.unit}".rstrip()
 
 
@@ -174,4 +177,4 @@ class SingleRodResult:
 
     def column_words(self, table: str, name: str) -> list[str]:
         """Words in the column `name` of the table `table`, one for each row."""
-        return self.list_texts[table].columns[name].texts()
+        return self.list_texts[table].columns[name].csv_texts()

@@ -70,7 +70,8 @@ def threshold_sentence(rod: SingleRodResult) -> str:
 
 
 def _oscillation_end_clause(rod: SingleRodResult) -> str:
-    """Clause on the force at which the first oscillation ends without flutter; empty if it does not."""
+    """Clause on the force at which the first oscillation ends without flutter; empty if there is no such
+    force."""
     end = oscillation_end_index(rod.column_words("crossings", "crossing_kind"))
     if end is None:
         return ""
@@ -150,15 +151,15 @@ def _early_search_end_clause(rod: SingleRodResult) -> str:
     return clause_format.format(_search_end_text(rod)) if rod.view.has_status("ended_early").all() else ""
 
 
-EIGENVALUE_COLUMNS = ("mode", "growth_rate", "frequency")
+FIRST_EIGENVALUE_COLUMNS = ("mode", "growth_rate", "frequency")
 """First columns in the list of eigenvalues."""
 HEADLINES = {
-    "spectrum": Headline(eigenvalue_sentence, (), "modes", (*EIGENVALUE_COLUMNS, "longitudinal_rate")),
+    "spectrum": Headline(eigenvalue_sentence, (), "modes", (*FIRST_EIGENVALUE_COLUMNS, "longitudinal_rate")),
     "modes": Headline(
         eigenvalue_sentence,
         ("numerical_abscissa", "transient_growth", "transient_time"),
         "modes",
-        (*EIGENVALUE_COLUMNS, "condition"),
+        (*FIRST_EIGENVALUE_COLUMNS, "condition"),
     ),
     "thresholds": Headline(
         threshold_sentence,

@@ -1,8 +1,8 @@
 """Values in a drawn figure with their positions, for the text that a page shows under the pointer.
 
 The values are read from the lines, scatter plots, bars and coloured cells of a matplotlib figure. The modules
-that draw figures are therefore independent of pages. names: labels of the two axes of a panel. words: legend
-entries by colour.
+that draw figures are therefore independent of pages. names: labels of the two axes of a panel. meanings:
+legend entries by colour.
 """
 
 from collections.abc import Iterator, Sequence
@@ -33,13 +33,13 @@ HOVER_VALUE_DIGITS = 8
 """Number of significant digits of a value under the pointer."""
 TYPOGRAPHIC_POINTS_PER_INCH = 72
 """Points per inch; a point is the length unit of matplotlib's SVG files."""
-FRAME_MARGIN = 1.0
+MAX_HOVER_DISTANCE_OUTSIDE_FRAME = 1.0
 """Values outside the frame of a panel, up to this distance, in pixels, also have texts."""
 
 
 @dataclass(frozen=True, slots=True)
 class HoverPoint:
-    """A value in a figure with the text shown for it. x, y: position relative to the upper left corner of the
+    """Text for a value in a figure. x, y: position of the value relative to the upper left corner of the
     figure, in points."""
 
     x: float
@@ -49,10 +49,10 @@ class HoverPoint:
 
 @dataclass(frozen=True, slots=True)
 class HoverSeries:
-    """Texts for n values of a curve. positions: positions relative to the lower left corner of the figure, in
-    pixels, (n, 2). texts: texts of the values."""
+    """Texts for n values of a curve. positions_in_pixels: positions relative to the lower left corner of the
+    figure, in pixels, (n, 2). texts: texts of the values."""
 
-    positions: Array
+    positions_in_pixels: Array
     texts: Sequence[str]
 
 
@@ -70,7 +70,7 @@ def hover_points(figure: Figure) -> list[HoverPoint]:
     points = []
     for series in series_list:
         stride = step if len(series.texts) > MAX_UNTHINNED_POINTS else 1
-        for (x, y), text in zip(series.positions[::stride], series.texts[::stride], strict=True):
+        for (x, y), text in zip(series.positions_in_pixels[::stride], series.texts[::stride], strict=True):
             points.append(HoverPoint(float(scale * x), float(height - scale * y), text))
     return points
 
@@ -84,11 +84,11 @@ def _hover_series_of_panel(axes: Axes, meanings: dict[str, str]) -> Iterator[Hov
     series_list += [_line_series(axes, line, names) for line in axes.lines if line.get_visible()]
     scatters = (dots for dots in axes.collections if isinstance(dots, PathCollection))
     series_list += [_scatter_series(dots, names) for dots in scatters]
-    panel_box = axes.bbox.padded(FRAME_MARGIN)
+    panel_box = axes.bbox.padded(MAX_HOVER_DISTANCE_OUTSIDE_FRAME)
     for series in series_list:
-        is_inside = np.all(np.isfinite(series.positions), axis=1)
-        is_inside[is_inside] = [panel_box.contains(x, y) for x, y in series.positions[is_inside]]
-        yield HoverSeries(series.positions[is_inside], list(compress(series.texts, is_inside)))
+        is_inside = np.all(np.isfinite(series.positions_in_pixels), axis=1)
+        is_inside[is_inside] = [panel_box.contains(x, y) for x, y in series.positions_in_pixels[is_inside]]
+        yield HoverSeries(series.positions_in_pixels[is_inside], list(compress(series.texts, is_inside)))
 
 
 def _line_series(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSeries:

@@ -16,7 +16,7 @@ from ...results.file.view import ResultView
 from ..figures import draw
 from ..figures.request import FIGURE_KINDS_BY_TASK, CycleShapeSolver
 from ..summary import summary_of
-from ..summary.selection import Selection
+from ..summary.selection import PointSelection
 from ..summary.summary_lines import Summary, TextTable
 from ..tables.column import Column
 from ..tables.table_names import DEFAULT_TABLE, POINTS_TABLE
@@ -138,7 +138,7 @@ def _table_for_page(table: Table) -> PageTable:
 
 def _cells(column: Column) -> list[Cell]:
     """Cells for all values of a column; the text of a missing value is empty."""
-    texts = column.texts()
+    texts = column.csv_texts()
     if column.values.dtype.kind != "f" or column.flag_meanings or column.is_estimate:
         return list(map(Cell, texts))
     rounded_texts = [f"{value:.{CELL_DIGITS}g}" for value in column.values]
@@ -216,7 +216,7 @@ def _statuses_with_parameter_ranges(view: ResultView, statuses: TextTable) -> Te
     rows = []
     for word, count_text, meaning in statuses.rows:
         ranges_text = (
-            Selection(list_view, list_view.has_status(word)).parameter_ranges_text()
+            PointSelection(list_view, list_view.has_status(word)).parameter_ranges_text()
             if word in view.status_flags.values()
             else ""
         )

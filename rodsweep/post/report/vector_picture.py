@@ -11,7 +11,7 @@ from .hover_points import hover_points
 
 SVG_NAMESPACE = "http://www.w3.org/2000/svg"
 XLINK_NAMESPACE = "http://www.w3.org/1999/xlink"
-HOVER_RADIUS = "4"
+HOVER_RADIUS_IN_POINTS = "4"
 """Radius, in points, of the invisible circle around a value. The browser shows the title of the circle under
 the pointer."""
 
@@ -60,6 +60,6 @@ def _add_hover_texts(root: ElementTree.Element, figure: Figure) -> None:
     the circle is the text under the pointer."""
     group = ElementTree.SubElement(root, f"{{{SVG_NAMESPACE}}}g", {"class": "values"})
     for point in hover_points(figure):
-        circle_attributes = {"cx": f"{point.x:.1f}", "cy": f"{point.y:.1f}", "r": HOVER_RADIUS}
+        circle_attributes = {"cx": f"{point.x:.1f}", "cy": f"{point.y:.1f}", "r": HOVER_RADIUS_IN_POINTS}
         circle = ElementTree.SubElement(group, f"{{{SVG_NAMESPACE}}}circle", circle_attributes)
         ElementTree.SubElement(circle, f"{{{SVG_NAMESPACE}}}title").text = point.text

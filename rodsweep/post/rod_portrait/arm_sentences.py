@@ -33,8 +33,8 @@ def arm_sentences(results: RodResults) -> Iterator[str]:
 
 
 def cycle_validity_caveat(view: ResultView) -> str:
-    """Sentence in brackets, after a blank, on the cycle of an arm to which the model does not apply; else an
-    empty text."""
+    """Sentence in brackets, after a blank, if the model does not apply to the cycle of an arm; else an empty
+    text."""
     validity = view.variables.get("model_applies")
     if validity is None or (validity != Validity.does_not_apply).any():
         return ""

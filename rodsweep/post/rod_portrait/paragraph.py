@@ -6,7 +6,7 @@ from math import isfinite
 
 import numpy as np
 
-from ...results.layouts.limit_cycle import CYCLE_STATUSES
+from ...results.layouts.limit_cycle import STATUS_NAMES_WITH_CYCLE
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, is_or_are
 from ..stored_branches import StoredBranch
@@ -136,7 +136,7 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
     stable = [stable_range for curve in curves for stable_range in curve.stable_ranges]
     is_decided = all(curve.is_fully_known for curve in curves)
     no_cycle_text = "none" if is_decided and not rod.hidden_count else "none is known"
-    errors = rod.special_point_errors
+    errors = rod.special_point_parameter_errors
     yield f"Stable cycles: {units.load_ranges_text(stable, errors) if stable else no_cycle_text}."
     if not rod.hidden_count:
         ranges = rod.coexistence_ranges
@@ -162,8 +162,8 @@ def _beginnings_phrase(curves: Sequence[StoredBranch]) -> str:
 
 
 def _incomplete_branches_sentence(curves: Sequence[StoredBranch], units: PortraitUnits) -> Iterator[str]:
-    """Yields a sentence on the branches that are not drawn to their ends, because the portrait's limit of the
-    work, or of the number of cycles, is reached."""
+    """Yields a sentence on the branches that are not drawn to their ends, because the portrait has reached
+    its limit on work or on the number of cycles."""
     limited_curves = [curve for curve in curves if curve.special_points[-1].reason == "list_full"]
     if not limited_curves:
         return
@@ -207,7 +207,7 @@ def _cycle_sentences(results: RodResults) -> Iterator[str]:
     for F, view in results.cycles:
         variables = view.point_values(0)
         word = str(view.status_names[0])
-        if word not in CYCLE_STATUSES:
+        if word not in STATUS_NAMES_WITH_CYCLE:
             no_cycle_text = f"no cycle that is drawn ({word.replace('_', ' ')})"
             clauses.append(
                 f"at {units.load_text(F)} a motion from a small deflection leads to {no_cycle_text}"

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ...results.file.view import ResultView
-from ...results.layouts.limit_cycle import CYCLE_STATUSES
+from ...results.layouts.limit_cycle import STATUS_NAMES_WITH_CYCLE
 from ..figures import style
 from ..figures.branch import BRANCH_COLOURS, add_stability_entries, draw_branch_curves, draw_straight_rod
 from ..figures.cycle.shapes_and_tip_motion import ARROW_LENGTH, draw_shapes, shades_of_shapes
@@ -55,7 +55,7 @@ def draw_rod_portrait(results: RodResults, with_words: bool = True) -> Figure:
         heights = ROW_HEIGHTS if _has_branches(results) else ROW_HEIGHTS_WITHOUT_BRANCHES
         figure_size = (PORTRAIT_SIZE[0], PORTRAIT_SIZE[1] * sum(heights) / sum(ROW_HEIGHTS))
         figure = Figure(figsize=figure_size, layout="constrained")
-        modes = list(results.modes) or [""]
+        modes = list(results.modes_at_first_thresholds) or [""]
         widths = [MODE_TO_CYCLE_PANEL_WIDTH_RATIO] * len(modes) + [1.0] * CYCLE_COUNT
         grid = figure.add_gridspec(4, len(widths), height_ratios=heights, width_ratios=widths)
         bar_panel = figure.add_subplot(grid[0, :])
@@ -144,10 +144,10 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> None:
 
 def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
     """Draws the deflection of the leading mode at the first threshold of the given kind."""
-    if kind not in results.modes:
+    if kind not in results.modes_at_first_thresholds:
         _write_sentence(axes, f"no mode: {results.missing_result_reasons['modes']}", PANEL_TEXT_WIDTH)
         return
-    F, view = results.modes[kind]
+    F, view = results.modes_at_first_thresholds[kind]
     variables = view.point_values(0)
     axes.set_title(results.units.mode_title(kind, F))
     if not np.isfinite(variables["Y_real"][0]).all():
@@ -197,7 +197,7 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
 
 def _has_cycle(view: ResultView) -> bool:
     """Whether the only point in `view` has a cycle."""
-    return bool(view.has_status(*CYCLE_STATUSES).all())
+    return bool(view.has_status(*STATUS_NAMES_WITH_CYCLE).all())
 
 
 def _sentence_of_point_status(view: ResultView) -> str:

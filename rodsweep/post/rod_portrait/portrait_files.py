@@ -47,7 +47,7 @@ def shown_results_text(results: RodResults) -> str:
     part_is_shown = {
         "thresholds": True,
         "branches of cycles": branches is not None and bool(branches.curves),
-        "modes at the thresholds": bool(results.modes),
+        "modes at the thresholds": bool(results.modes_at_first_thresholds),
         CYCLE_COUNT_WORDS[len(results.cycles)]: bool(results.cycles),
     }
     return enumeration([part_name for part_name, is_shown in part_is_shown.items() if is_shown])
@@ -59,7 +59,7 @@ def portrait_html(results: RodResults) -> str:
     picture = vector_picture(draw_rod_portrait(results, with_words=False), 1, caption)
     views = [*results.views.items()]
     load_text = results.units.load_text
-    views += [(f"modes at {load_text(F)}", view) for F, view in results.modes.values()]
+    views += [(f"modes at {load_text(F)}", view) for F, view in results.modes_at_first_thresholds.values()]
     views += [(f"limit cycle at {load_text(F)}", view) for F, view in results.cycles]
     return rendered_template(
         "portrait.html",

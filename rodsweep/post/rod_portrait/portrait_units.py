@@ -9,11 +9,11 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from ...model.arm.quantities import LOAD_SCALE_NAMES
+from ...model.arm.quantities import LOAD_SCALE_NAME_BY_LOAD
 from ...results.file.view import ResultView
 from ..figures import style
 from ..range_unions import ParameterRange
-from ..summary.arm.arm_texts import printing_unit
+from ..summary.arm.arm_texts import factor_and_printing_unit
 from ..summary.number_texts import parameter_ranges_text, rounded_text
 
 THRESHOLD_SUPERSCRIPTS_AND_WORDS = {"onset": ("*", "onset"), "hopf": ("**", "flutter")}
@@ -104,17 +104,17 @@ ROD_UNITS = PortraitUnits(
 
 
 def portrait_units(view: ResultView, load_kind: str, largest: float) -> PortraitUnits:
-    """Units of the portrait of a rod or an arm. largest: largest F, for which the prefix of the load is
-    chosen."""
+    """Units of the portrait of a rod or an arm. load_kind: kind of the load of an arm. largest: largest F,
+    for which the prefix of the load is chosen."""
     if not view.quantities:
         return ROD_UNITS
     force, length, tau2 = (
         float(view.quantities[quantity_name].ravel()[0])
-        for quantity_name in (LOAD_SCALE_NAMES[load_kind], "length", "tau2")
+        for quantity_name in (LOAD_SCALE_NAME_BY_LOAD[load_kind], "length", "tau2")
     )
 
     def unit(si: str, scale: float, largest: float) -> Unit:
-        factor, name = printing_unit(view, si, largest)
+        factor, name = factor_and_printing_unit(view, si, largest)
         return Unit(name=name, factor_from_dimensionless=scale * factor)
 
     return PortraitUnits(

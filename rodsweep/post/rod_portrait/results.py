@@ -54,7 +54,7 @@ class RodResults:
     views: Mapping[str, ResultView]
     """Results by task, for the tasks "thresholds", "criticality" and "branch"; a missing result has no
     entry."""
-    modes: Mapping[str, tuple[float, ResultView]]
+    modes_at_first_thresholds: Mapping[str, tuple[float, ResultView]]
     """(force, modes at this force) at the first threshold of a kind, by kind of threshold."""
     cycles: Sequence[tuple[float, ResultView]]
     """(force, limit cycle at this force), in increasing order of the force."""

@@ -20,7 +20,7 @@ from ...results.layouts import lacks_sweep_wide_variables
 from ...results.layouts.dimensions import UNIT_AND_LONG_NAME_OF_DIMENSION
 from ...results.layouts.variables import MISSING_STATUS
 from ...wording import counted, is_or_are, plural
-from ..cost_and_provenance import provenance_lines, rank_lines, time_lines
+from ..cost_and_provenance import computing_time_lines, last_run_lines, provenance_lines
 from ..material_texts import material_lines
 from ..tables.alignment import aligned_at_decimal_points, aligned_column_cells, rewrap_line, table_blocks
 from .arm.arm_answer_lines import arm_answer
@@ -30,12 +30,12 @@ from .criticality import criticality_summary
 from .limit_cycle import limit_cycle_summary
 from .modes import modes_summary
 from .phase_diagram import phase_diagram_summary
-from .selection import Selection
+from .selection import PointSelection
 from .spectrum import spectrum_summary
 from .summary_lines import Summary, SummaryLines, TextTable
 from .thresholds import thresholds_summary
 
-SUMMARY_FUNCTION_BY_TASK: dict[str, Callable[[Selection], SummaryLines]] = {
+SUMMARY_FUNCTION_BY_TASK: dict[str, Callable[[PointSelection], SummaryLines]] = {
     "spectrum": spectrum_summary,
     "thresholds": thresholds_summary,
     "phase_diagram": phase_diagram_summary,
@@ -44,7 +44,7 @@ SUMMARY_FUNCTION_BY_TASK: dict[str, Callable[[Selection], SummaryLines]] = {
     "criticality": criticality_summary,
     "branch": branch_summary,
 }
-"""For each task, the function of the computed points that returns the lines of the summary."""
+"""For each task, the function that returns the lines of the summary from the computed points."""
 MAX_TABLE_WIDTH = 1000
 """Largest width, in characters, of a table of numbers that is printed into a pipe or a file."""
 ARM_QUANTITY_DIGITS = 6
@@ -65,7 +65,7 @@ def summary_of(view: ResultView, every_status: bool = False) -> Summary:
     noun = POINT_NOUNS.get(view.task, "point")
     rods = computed & (status < NOT_SLENDER)
     no_points_lines = SummaryLines([] if computed.any() else [f"no {noun} is computed yet"])
-    lines = SUMMARY_FUNCTION_BY_TASK[view.task](Selection(view, rods)) if rods.any() else no_points_lines
+    lines = SUMMARY_FUNCTION_BY_TASK[view.task](PointSelection(view, rods)) if rods.any() else no_points_lines
     attributes = view.attributes
     return Summary(
         answer=_answer_lines(view, computed, lines),
@@ -80,8 +80,8 @@ def summary_of(view: ResultView, every_status: bool = False) -> Summary:
         axes_table=_axes_table(view),
         numbers_table=lines.numbers_table,
         cost_and_provenance_lines=[
-            *time_lines(view, computed, noun),
-            *rank_lines(attributes, noun),
+            *computing_time_lines(view, computed, noun),
+            *last_run_lines(attributes, noun),
             *provenance_lines(attributes),
         ],
     )
@@ -119,8 +119,7 @@ def show_summary(view: ResultView, every_status: bool = False) -> None:
 
 
 def print_lines(console: Console, lines: Sequence[str]) -> None:
-    """Prints lines, wrapped at the width of the terminal window. Lines written to a pipe or a file are not
-    wrapped."""
+    """Prints lines; if `wraps_lines`, they are wrapped at the width of the terminal window."""
     for line in lines:
         console.print(rewrap_line(line, console.width) if wraps_lines(console) else line, soft_wrap=True)
 
@@ -145,14 +144,14 @@ def _answer_lines(view: ResultView, computed: np.ndarray, summary: SummaryLines)
     points, of the shape of the points."""
     if not view.quantities or not computed.any():
         return [*summary.answer]
-    points = Selection(view, computed)
+    points = PointSelection(view, computed)
     lines = [*arm_answer(points), *summary.arm_sentences, *arm_variable_lines(points)]
     return [*lines, "", "the same in dimensionless numbers:", *summary.answer] if summary.answer else lines
 
 
 def _unfinished_lines(view: ResultView, missing_count: int, noun: str) -> list[str]:
     """Lines about points and curves that are not computed yet, and about points that only the journal holds.
-    missing_count: number of missing points."""
+    missing_count: number of missing points. noun: word for a point."""
     lines = []
     count_phrase = f"{counted(missing_count, noun)} {is_or_are(missing_count)}"
     if missing_count and (shard := view.attributes.get("shard")):
@@ -230,7 +229,7 @@ def _count_and_range(values: np.ndarray, digits: int = ARM_QUANTITY_DIGITS) -> t
 
 def _status_table(view: ResultView, status: np.ndarray, is_every_shown: bool, noun: str) -> TextTable:
     """Table of statuses, numbers of points, and meanings. is_every_shown: whether statuses that no point has
-    are included."""
+    are included. noun: word for a point."""
     sentences = view.status_sentences | {"missing": "not computed yet"}
     rows = []
     counts = dict(zip(*(array.tolist() for array in np.unique(status, return_counts=True)), strict=True))

@@ -1,5 +1,5 @@
-"""Branches of cycles in `rodsweep show`: ends, special points, and ranges with two stable states. parameter:
-name of the followed parameter."""
+"""Branches of cycles in `rodsweep show`: ends, special points, and ranges with two stable states.
+parameter_name: name of the followed parameter."""
 
 from collections.abc import Iterator, Sequence
 
@@ -13,7 +13,7 @@ from ..range_unions import ParameterRange
 from ..stored_branches import StoredBranch
 from .followed_ranges import searched_range_line
 from .number_texts import number_with_error_text, parameter_ranges_text, rounded_text, value_range_text
-from .selection import Selection
+from .selection import PointSelection
 from .summary_lines import SummaryLines, point_text, truncated_lines
 from .thresholds import failed_search_count_clause
 
@@ -44,7 +44,7 @@ BRANCH_END_WORDS = {
 """Phrase for the end of a branch, by reason of the end."""
 
 
-def branch_summary(points: Selection) -> SummaryLines:
+def branch_summary(points: PointSelection) -> SummaryLines:
     """Summary of branches at the computed points."""
     view = points.view
     computed = points.mask
@@ -88,16 +88,16 @@ def _branch_lines_of_single_rod(rod: RodBranches) -> Iterator[str]:
         errors = variables["amplitude_error"].ravel()[variables["branch"].ravel() == number]
         cycles_text = _cycles_and_ranges_text(curve, errors, parameter)
         yield f"branch {number}, {_ends_phrase(curve, parameter)}: {cycles_text}"
-        yield from _special_points_between_ends(curve, parameter)
+        yield from _special_point_lines_between_ends(curve, parameter)
         if curve.stable_ranges:
-            text = parameter_ranges_text(curve.stable_ranges, curve.special_point_errors)
+            text = parameter_ranges_text(curve.stable_ranges, curve.special_point_parameter_errors)
             yield f"  stable cycles at {parameter} = {text}"
         else:
             yield "  no stable cycle" if curve.is_fully_known else "  no cycle is known to be stable"
     if rod.curves and not rod.hidden_count:
         nowhere_text = "nowhere in the range" if rod.is_coexistence_known else "not known"
         ranges = rod.coexistence_ranges
-        errors = rod.special_point_errors
+        errors = rod.special_point_parameter_errors
         text = f"{parameter} = {parameter_ranges_text(ranges, errors)}" if ranges else nowhere_text
         yield f"{COEXISTENCE_WORDS}: {text}"
         if pairs := rod.two_stable_cycle_ranges:
@@ -116,7 +116,7 @@ def _cycles_and_ranges_text(curve: StoredBranch, errors: Array, parameter_name: 
     return f"{counted(int(cycles.sum()), 'cycle')}, {text}"
 
 
-def _special_points_between_ends(curve: StoredBranch, parameter_name: str) -> Iterator[str]:
+def _special_point_lines_between_ends(curve: StoredBranch, parameter_name: str) -> Iterator[str]:
     """Yields one line for each special point between the ends of a branch."""
     for special in curve.special_points:
         if special.kind in ("hopf", "end"):
@@ -219,7 +219,9 @@ def _lines_on_rods_with_ranges(
     for rod, rod_ranges in zip(rods, ranges, strict=True):
         unknown += not (rod_ranges or rod.is_coexistence_known)
         if rod_ranges:
-            text = f"{parameter_name} = {parameter_ranges_text(rod_ranges, rod.special_point_errors)}"
+            text = (
+                f"{parameter_name} = {parameter_ranges_text(rod_ranges, rod.special_point_parameter_errors)}"
+            )
             texts.append(": ".join(filter(None, (point_text(rod.view, rod.index), text))))
     yield f"{phrase} at {count_of_total(len(texts), len(rods), 'rod')}{failed_search_count_clause(unknown)}"
     yield from truncated_lines(texts, "rod")

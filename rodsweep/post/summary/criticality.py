@@ -9,7 +9,7 @@ from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import counted
 from .arm.arm_texts import single_arm_threshold_lines
 from .number_texts import rounded_text, value_range_text
-from .selection import Selection, counts_by_word_text, in_brackets
+from .selection import PointSelection, counts_by_word_text, in_brackets
 from .summary_lines import MAX_LISTED_ITEMS, SummaryLines, TextTable, number_table
 from .thresholds import (
     ENDED_EARLY_STATUS,
@@ -48,7 +48,7 @@ ALL_HOPF_POINTS_SENTENCE = "a = {amplitude_coefficient} L, b = {frequency_slope}
 """Sentence on all Hopf points of several rods."""
 
 
-def criticality_summary(points: Selection) -> SummaryLines:
+def criticality_summary(points: PointSelection) -> SummaryLines:
     """Summary of Hopf points at the computed points."""
     reliability = [_searched_range_line(points)]
     if points.mask.size == 1:
@@ -82,8 +82,9 @@ def criticality_summary(points: Selection) -> SummaryLines:
     return SummaryLines(answer, reliability, [f"{scope} Hopf points: {all_text}"])
 
 
-def _single_rod_summary(points: Selection, reliability: list[str]) -> SummaryLines:
-    """Summary of the Hopf points of the only rod in a file."""
+def _single_rod_summary(points: PointSelection, reliability: list[str]) -> SummaryLines:
+    """Summary of the Hopf points of the only rod in a file. reliability: lines of the summary about
+    reliability."""
     view = points.view
     variables = view.point_values(0)
     lines = list(_hopf_lines(variables))
@@ -126,8 +127,8 @@ def _hopf_table(variables: Mapping[str, np.ndarray]) -> TextTable | None:
 
 
 def _nearby_cycles_clause(variables: Mapping[str, np.ndarray], i: int, kind: str) -> str:
-    """Clause on the cycles near the i-th Hopf point of the only rod in a file: whether F is larger or
-    smaller, and whether the cycles are stable. kind: kind of the Hopf point."""
+    """Clause on the cycles near the i-th Hopf point of the only rod in a file: whether the cycles exist at
+    larger or at smaller F, and whether they are stable. kind: kind of the Hopf point."""
     sign = int(variables["criticality"][i])
     if sign == 0:
         return "the sign of Re c is within its error"
@@ -143,7 +144,7 @@ def _nearby_cycles_clause(variables: Mapping[str, np.ndarray], i: int, kind: str
     return f"stable cycles at {side_text}"
 
 
-def _subcritical_lines(points: Selection) -> Iterator[str]:
+def _subcritical_lines(points: PointSelection) -> Iterator[str]:
     """Yields lines on rods with subcritical Hopf points; rods whose first Hopf point is subcritical come
     first."""
     view = points.view
@@ -170,7 +171,7 @@ def _criticality_counts_text(signs: np.ndarray) -> str:
     return counts_by_word_text(signs, CRITICALITY_WORDS) or "none known"
 
 
-def _searched_range_line(points: Selection) -> str:
+def _searched_range_line(points: PointSelection) -> str:
     """Line on the searched range of F, and on the completeness of the list of Hopf points."""
     is_searched = np.isfinite(points.values("F_end")).any()
     search_clause = points.sentence_with_ranges("searched up to F = {F_end}; ") if is_searched else ""

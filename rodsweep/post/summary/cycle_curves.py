@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ...results.file.view import ResultView
 from ...results.layouts.branch import SPECIAL_KINDS
-from ...results.layouts.detached_branches import DETACHED_ROW_NAME, LOST_CURVE_ENDS_VARIABLE
+from ...results.layouts.detached_branches import DETACHED_ROW_VARIABLE, LOST_CURVE_ENDS_VARIABLE
 from ...results.layouts.fold_curve_extrema import UNLOCATED_EXTREMA_VARIABLE
 from ...results.layouts.phase_diagram import CYCLE_CURVE_END_REASONS
 from ...wording import count_of_total, counted
@@ -33,9 +33,9 @@ CYCLE_CURVE_END_WORDS = {
     "not_followed": "no further point found",
 }
 """Phrase for the reason for which a curve of folds or torus points of cycles ends."""
-MAX_RELATIVE_CURVE_DISTANCE = 0.01
-"""Largest distance of a special point of a row from the two points of a curve between which the curve meets
-the row, divided by the length of the row."""
+MAX_CURVE_DISTANCE_OVER_ROW_LENGTH = 0.01
+"""Where a curve crosses a row between two of its points, a special point of the row belongs to the curve if
+it lies between these two points, or outside their interval by at most this fraction of the row's length."""
 
 
 def plane_position_text(view: ResultView, prefix: str, i: int, parameters: PlaneParameters) -> str:
@@ -96,8 +96,8 @@ def detached_branch_lines(view: ResultView, parameters: PlaneParameters) -> list
     """Lines about the rows with cycles on detached branches, and about curves lost beyond the range."""
     variables = view.variables
     lines = []
-    if DETACHED_ROW_NAME in variables:
-        row_indices = variables[DETACHED_ROW_NAME] - 1
+    if DETACHED_ROW_VARIABLE in variables:
+        row_indices = variables[DETACHED_ROW_VARIABLE] - 1
         rows_text = count_of_total(len(row_indices), variables["status"].size, "row")
         values_text = axis_values_text(view.point_columns[parameters.row_parameter][row_indices])
         lines.append(
@@ -126,7 +126,7 @@ def _rows_missing_curve_point_lines(
     kinds, specials = map(
         view.flattened_by_point, ("cycle_special_kind", f"cycle_special_{parameters.line_parameter}")
     )
-    tolerance = MAX_RELATIVE_CURVE_DISTANCE * float(np.ptp(variables[parameters.line_parameter]))
+    tolerance = MAX_CURVE_DISTANCE_OVER_ROW_LENGTH * float(np.ptp(variables[parameters.line_parameter]))
     points = np.stack([variables[f"cycle_curve_{name}"][indices] for name in parameters[::-1]], axis=-1)
     lines = []
     for number, ((x, y), (next_x, next_y)) in enumerate(pairwise(points)):

@@ -44,8 +44,9 @@ def diagram_curve_lines(view: ResultView, parameters: PlaneParameters) -> list[s
 
 
 def curve_count_lines(view: ResultView, parameters: PlaneParameters) -> list[str]:
-    """Sentences on the numbers of curves by kind, their largest distance from the points located on rows,
-    along the rows and as a fraction of its range, and the number of points on no curve."""
+    """Sentences on the numbers of curves by kind, on the number of points on no curve, and on the largest
+    distance of the points located on rows from the curves. The distance is measured along the row and printed
+    as a fraction of the row's range."""
     variables = view.variables
     numbers = variables["curve_number"]
     hopf_count = len(np.unique(numbers[variables["curve_kind"] == 1]))

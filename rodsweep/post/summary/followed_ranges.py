@@ -1,4 +1,4 @@
-"""How far beyond the range branches of cycles are followed, and what is missed, in `rodsweep show`."""
+"""Limits to which branches of cycles are followed beyond the range, and missed cycles, in `rodsweep show`."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from ...arrays import list_of
 from ..branch_curves import followed_parameter, followed_range
 from ..crushing import uncrushed_ranges
 from .number_texts import value_range_text
-from .selection import Selection
+from .selection import PointSelection
 from .thresholds import proved_rod_count_text
 
 MISSED_CYCLES_TEXT = (
@@ -17,10 +17,10 @@ MISSED_CYCLES_TEXT = (
 """Clause on the cycles within the range that are not found."""
 
 
-def followed_beyond_range_text(points: Selection, parameter_name: str, prefix: str) -> str:
-    """Clauses on how far beyond the range of the file branches are followed that may enter the range, and on
-    the cycles that are missed. parameter_name: parameter along which branches are followed. prefix: the
-    variables are named `prefix` + "from" and `prefix` + "to"."""
+def followed_beyond_range_text(points: PointSelection, parameter_name: str, prefix: str) -> str:
+    """Clauses on the limits, beyond the range, up to which branches that may enter the range are followed,
+    and on the cycles that are missed. parameter_name: parameter along which branches are followed. prefix:
+    the limits are the variables `prefix` + "from" and `prefix` + "to"."""
     limits = [points.values(f"{prefix}{end}") for end in ("from", "to")]
     if not all(np.isfinite(values).any() for values in limits):
         return MISSED_CYCLES_TEXT
@@ -31,8 +31,9 @@ def followed_beyond_range_text(points: Selection, parameter_name: str, prefix: s
     )
 
 
-def searched_range_line(points: Selection) -> str:
-    """Line on the range of the followed parameter, and on the completeness of the list of Hopf points."""
+def searched_range_line(points: PointSelection) -> str:
+    """Line on the range of the followed parameter, on the completeness of the list of Hopf points, and on the
+    limits beyond the range; "no branch is followed" if the force crushes all rods everywhere."""
     view = points.view
     parameter = followed_parameter(view)
     start, end = followed_range(view)

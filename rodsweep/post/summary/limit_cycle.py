@@ -5,13 +5,13 @@ from collections.abc import Callable
 import numpy as np
 
 from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETER_NAMES
-from ...results.layouts.limit_cycle import CYCLE_STATUSES, SECOND_STABLE_STATES
+from ...results.layouts.limit_cycle import SECOND_STABLE_STATES, STATUS_NAMES_WITH_CYCLE
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted
 from ..located_thresholds import StoredThresholds
 from .arm.arm_texts import arm_quantity_ranges_text
 from .number_texts import error_text, value_range_text
-from .selection import Selection, counts_and_ranges_text, varied_parameters_at_points
+from .selection import PointSelection, counts_and_ranges_text, varied_parameters_at_points
 from .stability import rod_and_arm_stability_lines
 from .summary_lines import SummaryLines, TextTable, completeness_predicate, number_table
 
@@ -32,7 +32,7 @@ SINGLE_CYCLE_TABLE_ROWS = (
     ("largest Floquet multiplier", "multiplier", ""),
 )
 """(printed name, variable, unit) of the numbers printed for a single cycle."""
-STRAIGHT_ROD_SENTENCE = (
+STRAIGHT_ROD_EIGENVALUE_SENTENCE = (
     "straight rod: leading growth rate {linear_growth_rate} 1/tau2, frequency {linear_frequency} rad/tau2"
 )
 """Sentence on the eigenvalues of the straight rod."""
@@ -65,7 +65,7 @@ VARIABLES_OF_LARGEST_ERRORS = {
 """Variables of which the largest absolute value is printed as error, by printed name."""
 
 
-def limit_cycle_summary(points: Selection) -> SummaryLines:
+def limit_cycle_summary(points: PointSelection) -> SummaryLines:
     """Summary of limit cycles at the computed points."""
     view = points.view
     cycles = points.with_status("cycle")
@@ -77,13 +77,13 @@ def limit_cycle_summary(points: Selection) -> SummaryLines:
     answer = [outcome_count_line(points)]
     reliability = _hopf_completeness_lines(points)
     numbers = None
-    if is_single and points.with_status(*CYCLE_STATUSES).count:
+    if is_single and points.with_status(*STATUS_NAMES_WITH_CYCLE).count:
         answer.append(single_cycle_stability_line(points))
         numbers = single_cycle_table(points)
     elif cycles.count:
         answer.append(cycles.sentence_with_ranges(CYCLES_SENTENCE))
         reliability.insert(0, _error_line(cycles))
-    details = [points.sentence_with_ranges(STRAIGHT_ROD_SENTENCE)]
+    details = [points.sentence_with_ranges(STRAIGHT_ROD_EIGENVALUE_SENTENCE)]
     details += [tori.sentence_with_ranges(TORUS_SENTENCE)] if tori.count else []
     details += _cycle_lines(cycles) if cycles.count else []
     answer += [*stability_lines, *_second_state_lines(points)]
@@ -91,11 +91,11 @@ def limit_cycle_summary(points: Selection) -> SummaryLines:
 
 
 def outcome_count_line(
-    points: Selection, region: Callable[[Selection], str] = Selection.parameter_ranges_text
+    points: PointSelection, region: Callable[[PointSelection], str] = PointSelection.parameter_ranges_text
 ) -> str:
     """Line on the number of points with each outcome, and on their regions of parameters.
 
-    region: function that describes the place of points.
+    region: function that describes the region of a selection of points.
     """
     view = points.view
     points_text = counted(points.count, "point")
@@ -113,7 +113,7 @@ def outcome_count_line(
     return outcome_text if points.mask.size == 1 else f"{outcome_text} {place_text}"
 
 
-def _threshold_lines(points: Selection) -> tuple[list[str], list[str]]:
+def _threshold_lines(points: PointSelection) -> tuple[list[str], list[str]]:
     """Returns (lines, lines in an arm's units) about thresholds of the straight rod along F, or along all
     varied parameters if F is not varied."""
     view = points.view
@@ -130,7 +130,7 @@ def _threshold_lines(points: Selection) -> tuple[list[str], list[str]]:
     return lines, arm_sentences
 
 
-def _hopf_completeness_lines(points: Selection) -> list[str]:
+def _hopf_completeness_lines(points: PointSelection) -> list[str]:
     """Sentence, in a list, on whether the Hopf points are proved complete; empty if no line of points was
     searched."""
     variables = points.variables
@@ -142,7 +142,7 @@ def _hopf_completeness_lines(points: Selection) -> list[str]:
     return [f"{subject} {completeness_predicate(points.view)} for {proved_text}"]
 
 
-def single_cycle_stability_line(points: Selection) -> str:
+def single_cycle_stability_line(points: PointSelection) -> str:
     """Line that says whether the only cycle in a file is stable, or that no Floquet multiplier is
     computed."""
     if np.isnan(points.variables["multiplier"]).all():
@@ -152,7 +152,7 @@ def single_cycle_stability_line(points: Selection) -> str:
     return "the cycle is unstable: its largest nontrivial Floquet multiplier is above 1"
 
 
-def single_cycle_table(points: Selection) -> TextTable | None:
+def single_cycle_table(points: PointSelection) -> TextTable | None:
     """Table of the numbers of the only cycle in a file, with errors; None if no number is known."""
     known = [row for row in SINGLE_CYCLE_TABLE_ROWS if np.isfinite(points.values(row[1])).all()]
     numbers = [points.values(name).max() for _, name, _ in known]
@@ -162,7 +162,7 @@ def single_cycle_table(points: Selection) -> TextTable | None:
     return number_table(("", labels, None), ("value", numbers, errors), ("unit", units, None))
 
 
-def _second_state_lines(points: Selection) -> list[str]:
+def _second_state_lines(points: PointSelection) -> list[str]:
     """Lines about points at which a second stable state is certain or possible, or at which the straight rod
     is stable but the motion ended in no stable state."""
     states = points.variables["second_state"]
@@ -186,14 +186,14 @@ def _second_state_lines(points: Selection) -> list[str]:
     return lines
 
 
-def _point_count_clause(part: Selection, points: Selection) -> str:
-    """Clause on the number of points of the part; empty if there is a single point."""
+def _point_count_clause(part: PointSelection, points: PointSelection) -> str:
+    """Clause on the number of points of `part` among those of `points`; empty if `points` has one point."""
     return "" if points.count == 1 else f" at {part.count_of_total_text(points)}"
 
 
-def _cycle_lines(cycles: Selection) -> list[str]:
-    """Lines on frequency, period in tau1, extrema of the tip, power, multiplier, integrated periods and least
-    h1 of the cycles."""
+def _cycle_lines(cycles: PointSelection) -> list[str]:
+    """Lines on frequency, period in tau1, extrema of the tip, power, multiplier, returns of the tip in the
+    integration, and smallest h1 of the cycles."""
     lines = [
         cycles.sentence_with_ranges("frequency of the cycle: {frequency} rad/tau2")
         + _mode_frequency_clause(cycles)
@@ -203,7 +203,7 @@ def _cycle_lines(cycles: Selection) -> list[str]:
     return [*lines, *map(cycles.sentence_with_ranges, CYCLE_DETAIL_SENTENCES)]
 
 
-def _mode_frequency_clause(cycles: Selection) -> str:
+def _mode_frequency_clause(cycles: PointSelection) -> str:
     """Clause that compares the frequencies of the cycles with the frequencies of the leading modes; empty if
     no frequency of a leading mode is known."""
     mode_frequencies = cycles.variables["linear_frequency"]
@@ -221,7 +221,7 @@ def _mode_frequency_clause(cycles: Selection) -> str:
     return clause
 
 
-def _error_line(cycles: Selection) -> str:
+def _error_line(cycles: PointSelection) -> str:
     """Line on the largest errors of the cycles."""
     errors = []
     for word, name in VARIABLES_OF_LARGEST_ERRORS.items():

@@ -6,12 +6,12 @@ import numpy as np
 
 from ...wording import count_of_total, counted
 from .number_texts import MISSING_VALUE_TEXT
-from .selection import Selection
+from .selection import PointSelection
 from .spectrum import spectrum_summary
 from .summary_lines import SummaryLines
 
 
-def modes_summary(points: Selection) -> SummaryLines:
+def modes_summary(points: PointSelection) -> SummaryLines:
     """Summary of modes at the computed points."""
     summary = spectrum_summary(points)
     reliability = [*summary.reliability]
@@ -25,7 +25,7 @@ def modes_summary(points: Selection) -> SummaryLines:
     return replace(summary, answer=answer, reliability=reliability)
 
 
-def transient_growth_lines(points: Selection) -> list[str]:
+def transient_growth_lines(points: PointSelection) -> list[str]:
     """Lines about the condition of the leading eigenvalue, the numerical abscissa and the transient growth;
     fewer if no growth is stored."""
     lines = [points.sentence_with_ranges("condition number of the leading eigenvalue: {first condition}")]

@@ -31,7 +31,8 @@ def value_range_text(
 ) -> str:
     """Range of the finite `values`, of any shape, as text; MISSING_VALUE_TEXT if no value is finite.
 
-    errors: absolute errors, of the shape of the values, which limit the number of digits.
+    errors: absolute errors, of the shape of the values, which limit the number of digits. max_digits: largest
+    number of significant digits.
     """
     values = np.asarray(values, dtype=float)
     is_finite = np.isfinite(values)
@@ -54,8 +55,8 @@ def axis_values_text(values: np.ndarray) -> str:
 
 def parameter_ranges_text(ranges: Sequence[tuple[float, float]], errors: Mapping[float, float]) -> str:
     """Ranges of a parameter as text; MISSING_VALUE_TEXT for an empty list. errors: absolute errors of ends of
-    ranges, by end; other ends are exact. Each end is rounded at the decimal place of twice its error, to
-    MAX_LOCATED_END_DIGITS digits at most."""
+    ranges, by end; other ends are exact. Each end is rounded so that its error is at most half a unit of the
+    last digit, to MAX_LOCATED_END_DIGITS digits at most."""
     ends = [
         [_rounded_to_error(end, 2 * errors.get(end, 0.0), MAX_LOCATED_END_DIGITS) for end in ends]
         for ends in ranges
@@ -129,8 +130,8 @@ def rounded_text(value: float, error: float, max_digits: int = MAX_RANGE_END_DIG
 
 
 def _rounded_to_error(value: float, error: float, max_digits: int) -> str:
-    """A finite number as text, rounded at the decimal place of `error`, with at least one and at most
-    `max_digits` significant digits."""
+    """A finite number as text with at least one and at most `max_digits` significant digits. The unit of the
+    last digit is the smallest power of ten above `error`, if these limits allow."""
     if value == 0:
         return "0"
     size = floor(log10(abs(value)))

@@ -16,7 +16,7 @@ from .diagram_curves import (
 )
 from .followed_ranges import followed_beyond_range_text
 from .number_texts import value_range_text
-from .selection import DiagramRows, Selection, counts_by_word_text, percents_by_word_text
+from .selection import DiagramRows, PointSelection, counts_by_word_text, percents_by_word_text
 from .stable_states import stable_state_lines
 from .summary_lines import SummaryLines
 from .thresholds import search_cost_lines, search_reliability_lines
@@ -32,10 +32,10 @@ CROSSING_KIND_REMARKS = {
 }
 """Explanation printed after the name of a kind of crossing."""
 FLUTTER, UNDECIDED = (stored_number_of_word(word, STABILITY_CLASSES) for word in ("flutter", "undecided"))
-"""Stored numbers of two classes."""
+"""Stored numbers of the classes flutter and undecided."""
 
 
-def phase_diagram_summary(points: Selection) -> SummaryLines:
+def phase_diagram_summary(points: PointSelection) -> SummaryLines:
     """Summary of the computed rows of a phase diagram."""
     view = points.view
     rows = DiagramRows(view, points.mask, plane_parameters(view))
@@ -130,8 +130,8 @@ def _undecided_and_flutter_lines(rows: DiagramRows, incomplete: np.ndarray) -> l
     no_flutter = rows.where(~has_flutter & ~incomplete & ~is_undecided.any(axis=-1))
     if flutter.count and no_flutter.count:
         lines.append(
-            f"flutter: on {flutter.count_of_total_text(rows, 'row')}, {flutter.row_values_text}; none on "
-            f"{no_flutter.count}, {no_flutter.row_values_text}"
+            f"flutter: on {flutter.count_of_total_text(rows, 'row')}, {flutter.row_parameter_values_text}; "
+            f"none on {no_flutter.count}, {no_flutter.row_parameter_values_text}"
         )
     return lines
 

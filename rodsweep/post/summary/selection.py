@@ -14,12 +14,12 @@ from .number_texts import axis_values_text, value_range_text
 from .variable_errors import absolute_errors, known_values_mask
 
 RANGE_PLACEHOLDER_PATTERN = re.compile(r"\{(first )?(\w+)\}")
-"""Pattern for the place of a range in a sentence: the name of a variable in braces, for a list of each point
-after the word "first" if only the first items of the lists are meant."""
+"""Pattern for the place of a range in a sentence: the name of a variable in braces, like {period}. Of a
+variable with a list at each point, {first growth_rate} stands for the first items of the lists."""
 
 
 @dataclass(frozen=True, slots=True)
-class Selection:
+class PointSelection:
     """Points of a result file. mask: mask of the selected points, of the shape of the points."""
 
     view: ResultView
@@ -44,7 +44,7 @@ class Selection:
         """The selected points whose status has one of the names `statuses`."""
         return self.where(self.view.has_status(*statuses))
 
-    def parts_by_word(self, masks: Mapping[str, np.ndarray]) -> dict[str, "Selection"]:
+    def parts_by_word(self, masks: Mapping[str, np.ndarray]) -> dict[str, "PointSelection"]:
         """The selected points in each of the masks, by word; without words to which no point belongs."""
         parts = {word: self.where(mask) for word, mask in masks.items()}
         return {word: part for word, part in parts.items() if part.count}
@@ -57,8 +57,8 @@ class Selection:
         """Absolute errors of a variable at the selected points, (points, ...)."""
         return absolute_errors(self.variables, name)[self.mask]
 
-    def count_of_total_text(self, total: "Selection", noun: str = "point") -> str:
-        """Number of the points out of those in `total`, such as "2 of 4 points"."""
+    def count_of_total_text(self, total: "PointSelection", noun: str = "point") -> str:
+        """Number of selected points out of those in `total`, such as "2 of 4 points"."""
         return count_of_total(self.count, total.count, noun)
 
     def range_text(self, name: str) -> str:
@@ -88,7 +88,7 @@ class Selection:
 
 
 @dataclass(frozen=True, slots=True)
-class DiagramRows(Selection):
+class DiagramRows(PointSelection):
     """Rows of a phase diagram. parameters: parameter along the rows, and parameter that is constant on a
     row."""
 
@@ -99,11 +99,11 @@ class DiagramRows(Selection):
         return condition & self.mask[..., np.newaxis]
 
     def rows_with_items(self, items: np.ndarray) -> Self:
-        """The rows on which the mask `item_mask`, (..., n), is true for an item."""
+        """The rows with at least one item in the mask `items`, (..., n), a result of `item_mask`."""
         return self.where(np.any(items, axis=-1))
 
     @property
-    def row_values_text(self) -> str:
+    def row_parameter_values_text(self) -> str:
         """Values of the parameter that is constant on a row, as text: "k1 = 100 to 200"."""
         row = self.parameters.row_parameter
         return f"{row} = {axis_values_text(self.view.point_columns[row][self.mask.ravel()])}"
@@ -122,7 +122,7 @@ class DiagramRows(Selection):
         errors = None if error is None else self.variables[error][items]
         positions_text = f"{self.parameters.line_parameter} = {value_range_text(positions, errors)}"
         count_text = with_items.count_of_total_text(self, "row")
-        return f"{bound}{count_text}, {positions_text}, {with_items.row_values_text}"
+        return f"{bound}{count_text}, {positions_text}, {with_items.row_parameter_values_text}"
 
 
 def varied_parameters_at_points(view: ResultView) -> dict[str, np.ndarray]:
@@ -131,7 +131,8 @@ def varied_parameters_at_points(view: ResultView) -> dict[str, np.ndarray]:
 
 
 def counts_and_ranges_text(
-    parts: Mapping[str, Selection], region: Callable[[Selection], str] = Selection.parameter_ranges_text
+    parts: Mapping[str, PointSelection],
+    region: Callable[[PointSelection], str] = PointSelection.parameter_ranges_text,
 ) -> str:
     """Number and region of the points of each part: "stable at 2 (F = 1 to 2), unstable at 1 (F = 3)"."""
     return ", ".join(f"{word} at {part.count}{in_brackets(region(part))}" for word, part in parts.items())
@@ -139,14 +140,14 @@ def counts_and_ranges_text(
 
 def counts_by_word_text(codes: np.ndarray, words: Mapping[int, str]) -> str:
     """Number of items with each code that occurs: "3 supercritical, 1 subcritical"; empty if none occurs.
-    codes: codes of the items, of any shape."""
+    codes: codes of the items, of any shape. words: words by code."""
     counts = {word: int((codes == code).sum()) for code, word in words.items()}
     return ", ".join(f"{count} {word}" for word, count in counts.items() if count)
 
 
 def percents_by_word_text(codes: np.ndarray, words: Mapping[int, str]) -> str:
     """Percentage of the items with each code that occurs: "75.0 % monotone, 25.0 % flutter". codes: codes of
-    the items, of any shape."""
+    the items, of any shape. words: words by code."""
     counts = {word: int((codes == code).sum()) for code, word in words.items()}
     return ", ".join(f"{100 * count / codes.size:.1f} % {word}" for word, count in counts.items() if count)
 

@@ -3,12 +3,12 @@
 import numpy as np
 
 from ...results.file.view import ResultView
-from ...results.layouts.rod_properties import estimates_counts, has_uniform_linear_rods
+from ...results.layouts.rod_properties import has_estimated_counts, has_uniform_linear_rods
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted
 from ..located_thresholds import StoredThresholds
 from .number_texts import value_range_text
-from .selection import Selection, counts_and_ranges_text
+from .selection import PointSelection, counts_and_ranges_text
 from .stability import rod_and_arm_stability_lines
 from .summary_lines import SummaryLines, TextTable, number_table
 
@@ -29,7 +29,7 @@ UNSTABLE_COUNT_CONFIRMED_WORDS = "proved by D or counted by its winding number, 
 """Phrase for a confirmed number of unstable modes of a rod that varies along its length."""
 
 
-def spectrum_summary(points: Selection) -> SummaryLines:
+def spectrum_summary(points: PointSelection) -> SummaryLines:
     """Summary of spectra at the computed points."""
     view = points.view
     if points.mask.size == 1:
@@ -50,11 +50,11 @@ def spectrum_summary(points: Selection) -> SummaryLines:
         rates = "leading growth rate {first growth_rate} 1/tau2, frequency {first frequency} rad/tau2"
         details.insert(0, points.sentence_with_ranges(rates))
     return SummaryLines(
-        [stable_point_count_line(points), *threshold_lines], reliability, details, arm_sentences
+        [stability_counts_line(points), *threshold_lines], reliability, details, arm_sentences
     )
 
 
-def stable_point_count_line(points: Selection) -> str:
+def stability_counts_line(points: PointSelection) -> str:
     """Line on the numbers of points at which the straight rod is stable, unstable, or of unknown
     stability."""
     unstable = points.variables["unstable_count"]
@@ -86,12 +86,12 @@ def single_point_unstable_count_line(view: ResultView) -> str:
     if unstable_count < 0:
         return "unstable modes: not known"
     proof = UNSTABLE_COUNT_PROOF_WORDS[bool(view.variables["certified"].all())]
-    if view.variables["certified"].all() and estimates_counts(view.config):
+    if view.variables["certified"].all() and has_estimated_counts(view.config):
         proof = UNSTABLE_COUNT_CONFIRMED_WORDS
     return f"unstable modes: {unstable_count}, {proof}"
 
 
-def eigenvalue_error_lines(points: Selection) -> list[str]:
+def eigenvalue_error_lines(points: PointSelection) -> list[str]:
     """List with a line on the errors of the eigenvalues; empty if no error is known."""
     moduli = np.hypot(points.values("growth_rate"), points.values("frequency"))
     relative = points.values("error_estimate") / moduli
@@ -101,7 +101,7 @@ def eigenvalue_error_lines(points: Selection) -> list[str]:
     return [f"relative error of the eigenvalues: at most {worst:.1e}, median {median:.1e}"]
 
 
-def mesh_line(points: Selection) -> str:
+def mesh_line(points: PointSelection) -> str:
     """Line on the number of unknowns per point, and on the number of points without a mesh."""
     unknowns = 3 * points.values("elements").astype(int) * points.values("order")
     meshless_count = int((unknowns == 0).sum())
@@ -113,14 +113,14 @@ def mesh_line(points: Selection) -> str:
     return text
 
 
-def largest_unstable_count_line(points: Selection) -> str:
+def largest_unstable_count_line(points: PointSelection) -> str:
     """Line on the largest number of unstable modes, and on the numbers of points at which the number of
-    unstable modes is proved (for rods that vary along their length: confirmed by an estimate) and unknown."""
+    unstable modes is proved (for rods that vary along their length: confirmed by an estimate), or unknown."""
     unstable = points.values("unstable_count")
     unknown_count = int((unstable < 0).sum())
     if unknown_count == points.count:
         return "number of unstable modes: not known at any point"
-    certainty_text = "confirmed by an estimate" if estimates_counts(points.view.config) else "proved"
+    certainty_text = "confirmed by an estimate" if has_estimated_counts(points.view.config) else "proved"
     points_text = count_of_total(points.values("certified").sum(), points.count, "point")
     unknown_text = f", not known at {unknown_count}" if unknown_count else ""
     return (

@@ -76,12 +76,13 @@ def _positions_text(
     searched_count: int,
     parameter_name: str,
 ) -> str:
-    """Positions of thresholds as text: one by one for a few lines of points, else as a range. by_line:
-    thresholds by index of the line. names: text for each line. searched_count: number of lines with at least
-    two points; a threshold of any other line is not known."""
+    """Positions of thresholds as text: one by one for a few lines of points, otherwise as a range.
+    parameter_name: parameter along the lines. by_line: thresholds by index of the line. names: text for each
+    line. searched_count: number of lines with at least two points; a threshold of any other line is not
+    known."""
     points = [point for line in by_line.values() for point in line]
     located = [point for point in points if isinstance(point, LocatedThreshold)]
-    errors = [rounded_number_and_total_error(point.position, point.error)[1] for point in located]
+    errors = [rounded_number_and_total_error(point.position, point.position_error)[1] for point in located]
     error_clause = f" (+- {error_text(max(errors))})" if errors else ""
     count_text = count_of_total(len(by_line), searched_count, "line")
     lines_text = f", found on {count_text} of points along {parameter_name}"
@@ -110,4 +111,4 @@ def _position_text(threshold: LocatedOrBracketedThreshold) -> str:
     ends."""
     if isinstance(threshold, BracketedThreshold):
         return f"between {threshold.low:.6g} and {threshold.high:.6g}"
-    return rounded_number_and_total_error(threshold.position, threshold.error)[0]
+    return rounded_number_and_total_error(threshold.position, threshold.position_error)[0]

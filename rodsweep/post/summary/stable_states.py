@@ -25,7 +25,8 @@ STATES_WITH_LISTED_REGIONS = {
 }
 """Values of `stable_states` whose regions are listed, by the phrase in the summary."""
 SPECIAL_KINDS_WITHOUT_CYCLE_CHANGE = tuple(map(SPECIAL_KINDS.index, ("none", "hopf")))
-"""Stored numbers of special points that are no change of cycles beside the changes of the straight rod."""
+"""Stored numbers of the kinds of special points that do not count as changes of cycles: no special point, and
+Hopf points, which count as changes of the straight rod."""
 
 
 def stable_state_lines(rows: DiagramRows) -> list[str]:
@@ -43,7 +44,7 @@ def stable_state_lines(rows: DiagramRows) -> list[str]:
             hidden = rows.where(
                 ~in_state.any(axis=-1) & _has_coexistence_only_between_points(rows.view, line)
             )
-            rows_text = f"on {counted(hidden.count, 'row')}, {hidden.row_values_text}"
+            rows_text = f"on {counted(hidden.count, 'row')}, {hidden.row_parameter_values_text}"
             lines += [f"{phrase}: only between grid points {rows_text}"] if hidden.count else []
     for kind, phrase in SPECIAL_POINT_WORDS_BY_KIND.items():
         of_kind = rows.item_mask(rows.variables["cycle_special_kind"] == SPECIAL_KINDS.index(kind))

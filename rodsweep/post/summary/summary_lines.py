@@ -43,7 +43,7 @@ class SummaryLines:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Summary(SummaryLines):
     """All lines and tables that `rodsweep show` prints about a file: the summary of the task's result, with
-    lines about unfinished points, and what is printed for every task."""
+    lines about unfinished points, and the parts that are printed for every task."""
 
     statuses: TextTable
     """Number of points with each status, and the meaning of the status."""

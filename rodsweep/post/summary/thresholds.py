@@ -12,7 +12,7 @@ from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import counted, is_or_are, plural
 from .arm.arm_texts import single_arm_threshold_lines
 from .number_texts import error_text, rounded_text, value_range_text
-from .selection import Selection, in_brackets
+from .selection import PointSelection, in_brackets
 from .stability import FORCE_THRESHOLD_WORDS
 from .summary_lines import SummaryLines, TextTable, completeness_predicate, number_table, point_text
 from .threshold_trends import monotonicity_lines
@@ -32,14 +32,15 @@ FIRST_CROSSING_WORDS = {
 }
 """Phrase before the force of the first crossing of each kind, in the summary of a single rod."""
 LATER_CROSSING_WORDS = {"hopf": "flutter again from", "restabilization": "stable again from"}
-"""Phrase before the force of a later window of flutter: of its start and of its end."""
+"""Phrase before the force at which a later window of flutter starts ("hopf") or ends ("restabilization")."""
 OSCILLATION_END_KINDS = ("real_again", "real_leads")
 """Kinds of crossings of a stable rod above which a real eigenvalue leads."""
 
 
 def oscillation_end_index(kinds: Sequence[str]) -> int | None:
-    """Index, in a list of crossings, of the crossing at which the oscillation that starts at the first onset
-    ends without flutter; None if it does not. kinds: kinds of the crossings, in the order of the force."""
+    """Index, in a list of crossings, of the crossing that ends, without flutter, the oscillation that starts
+    at the first onset; None if there is no such crossing. kinds: kinds of the crossings, in the order of the
+    force."""
     after_onset = list(kinds).index("onset") + 1 if "onset" in kinds else len(kinds)
     return after_onset if after_onset < len(kinds) and kinds[after_onset] in OSCILLATION_END_KINDS else None
 
@@ -56,7 +57,7 @@ def later_flutter_change_indices(kinds: Sequence[str]) -> list[int]:
     return indices[1:]  # the first is the end of the first window
 
 
-def thresholds_summary(points: Selection) -> SummaryLines:
+def thresholds_summary(points: PointSelection) -> SummaryLines:
     """Summary of thresholds at the computed points."""
     view = points.view
     costs = search_cost_lines(points)
@@ -75,7 +76,7 @@ def thresholds_summary(points: Selection) -> SummaryLines:
     return SummaryLines(answer, reliability, [*monotonicity_lines(view), *costs])
 
 
-def first_threshold_line(points: Selection, event: str) -> str:
+def first_threshold_line(points: PointSelection, event: str) -> str:
     """Line on the forces and rates at the first threshold of the kind `event`, and on the numbers of rods
     with this threshold and with an unknown result."""
     view = points.view
@@ -192,20 +193,22 @@ def unstored_crossings_clause(crossing_count: int) -> str:
     return text if crossing_count > 0 else ""
 
 
-def proved_rod_count_text(points: Selection, noun: str) -> str:
-    """Predicate for the lists of crossings of the points: "is proved complete for 2 of 4 rods"."""
+def proved_rod_count_text(points: PointSelection, noun: str) -> str:
+    """Predicate for the lists of crossings of the points: "is proved complete for 2 of 4 rods". noun: word
+    for a point."""
     certified = points.where(points.variables["certified"] > 0)
     return f"{completeness_predicate(points.view)} for {certified.count_of_total_text(points, noun)}"
 
 
-def unstored_crossing_count(points: Selection) -> int:
+def unstored_crossing_count(points: PointSelection) -> int:
     """Number of the crossings of all points that are not stored because the lists were full."""
     stored_counts = (points.values("crossing_kind") > 0).sum(axis=-1)
     return int((points.values("crossing_count") - stored_counts).clip(min=0).sum())
 
 
-def search_reliability_lines(points: Selection, noun: str) -> list[str]:
-    """Lines about completeness, undecided ranges, numbers of stored crossings and errors of the searches."""
+def search_reliability_lines(points: PointSelection, noun: str) -> list[str]:
+    """Lines about completeness, undecided ranges, numbers of stored crossings and errors of the searches.
+    noun: word for a point."""
     is_crossing = points.values("crossing_kind") > 0
     stored_counts = is_crossing.sum(axis=-1)
     errors = points.values("crossing_error")[is_crossing & np.isfinite(points.values("crossing_error"))]
@@ -222,7 +225,7 @@ def search_reliability_lines(points: Selection, noun: str) -> list[str]:
     return lines
 
 
-def search_cost_lines(points: Selection) -> list[str]:
+def search_cost_lines(points: PointSelection) -> list[str]:
     """List with a line on the cost of the searches; empty for searches that count unstable modes, which store
     no cost."""
     if not has_uniform_linear_rods(points.view.config):

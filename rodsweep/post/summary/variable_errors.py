@@ -8,7 +8,7 @@ import numpy as np
 RELATIVE_EIGENVALUE_ERROR = 1e-9
 """Relative error of the straight rod's eigenvalue in results of limit cycles, equal to the tolerance of the
 eigenvalue solver."""
-RELATIVE_ERROR_NAMES = {
+RELATIVE_ERROR_NAME_BY_VARIABLE = {
     "period": "period_error",
     "frequency": "period_error",
     "period_tau1": "period_error",
@@ -34,7 +34,7 @@ ABSOLUTE_ERROR_NAMES = {
     "crossing_frequency": "crossing_frequency_error",
 }
 """For each variable, the name of the variable that contains its absolute error. In files with a period, the
-error of `frequency` is relative (see RELATIVE_ERROR_NAMES)."""
+error of `frequency` is relative (see RELATIVE_ERROR_NAME_BY_VARIABLE)."""
 COMPLEX_VARIABLES = ("landau", "growth_slope")
 """Complex variables, stored as real and imaginary part. The stored error is relative to the modulus."""
 TIP_SCALED_ERROR_VARIABLES = ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max", "least_stretch")
@@ -45,7 +45,7 @@ with arms of segments and of rubber."""
 CYCLE_POWER_VARIABLE_NAMES = ("injection_mean", "injection_rms", "dissipation_mean", "dissipation_rms")
 """Mean powers and rms fluctuations. Their errors follow from the errors of amplitude, period and energy
 balance."""
-MAX_ERROR_OF_KNOWN_GROWTH_TIME = 0.5
+MAX_RELATIVE_ERROR_OF_GROWTH_TIME = 0.5
 """The time of the largest transient growth is treated as unknown if its relative error is at least this
 number."""
 STRAIGHT_ROD_EIGENVALUE_NAMES = ("linear_growth_rate", "linear_frequency")
@@ -84,7 +84,7 @@ def _errors_of_real_variable(variables: Mapping[str, np.ndarray], name: str) -> 
         # The growth is quadratic near its maximum, and is 1 at t = 0.
         log_growth = np.maximum(1 - 1 / variables["transient_growth"], np.finfo(float).tiny)
         return values * np.sqrt(variables["growth_error"] / log_growth)
-    relative_error = RELATIVE_ERROR_NAMES.get(name, "")
+    relative_error = RELATIVE_ERROR_NAME_BY_VARIABLE.get(name, "")
     if name == "modulation_ratio" or relative_error in variables:
         return values * (variables[relative_error] if relative_error else RELATIVE_MODULATION_RATIO_ERROR)
     return (
@@ -118,4 +118,4 @@ def known_values_mask(variables: Mapping[str, np.ndarray], name: str) -> np.ndar
     values = np.asarray(variables[name])
     if name != "transient_time" or "growth_error" not in variables:
         return np.ones(values.shape, bool)
-    return (values == 0) | ~(absolute_errors(variables, name) >= MAX_ERROR_OF_KNOWN_GROWTH_TIME * values)
+    return (values == 0) | ~(absolute_errors(variables, name) >= MAX_RELATIVE_ERROR_OF_GROWTH_TIME * values)

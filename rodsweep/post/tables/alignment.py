@@ -67,9 +67,7 @@ def aligned_column_cells(heading_lines: Sequence[str], cells: Sequence[str]) -> 
 
 def table_blocks(columns: Sequence[Sequence[str]], width: int = LINE_WIDTH) -> Iterator[list[str]]:
     """Yields blocks of lines at most `width` wide: the first column, and as many of the following columns as
-    fit. columns: cells of every column, as from `aligned_column_cells`.
-
-    """
+    fit. columns: cells of every column, as from `aligned_column_cells`."""
     first_column, *other_columns = columns
     block = [first_column]
     for column in other_columns:

@@ -72,7 +72,7 @@ class Column:
             missing_mask=np.concatenate([self.missing_mask, absent]),
         )
 
-    def texts(self) -> list[str]:
+    def csv_texts(self) -> list[str]:
         """Values as text for CSV: words, or the shortest decimal number from which the value can be
         recovered."""
         if self.is_boolean:
@@ -94,7 +94,9 @@ class Column:
         texts = [text.removesuffix(".0") for text in list_of(values.astype(str))]
         if not self.is_input:
             return texts
-        return [_without_rounding_error(value, text) for value, text in zip(self.values, texts, strict=True)]
+        return [
+            _text_without_rounding_error(value, text) for value, text in zip(self.values, texts, strict=True)
+        ]
 
 
 def column_of(variable: Variable, values: NDArray, flag_meanings: Mapping[int, str] | None = None) -> Column:
@@ -113,7 +115,7 @@ def coordinate_column(name: str, unit: str, meaning: str, values: NDArray) -> Co
     return Column(name, unit, meaning, values, np.isnan(values.astype(float)), is_input=True)
 
 
-def _without_rounding_error(value: float, text: str) -> str:
+def _text_without_rounding_error(value: float, text: str) -> str:
     """Text of a coordinate, without rounding error if this text is less than half as long: 2500 for
     2500.0000000000005. A number typed with 17 digits keeps all of them. text: the value with all digits."""
     if not np.isfinite(value):

@@ -12,7 +12,7 @@ from ...model.arm.drag import DRAG_ESTIMATE_NAMES
 from ...model.arm.quantities import ARM_FILE_VARIABLES
 from ...results.file.view import ResultView
 from ...results.layouts.dimensions import UNIT_AND_LONG_NAME_OF_DIMENSION
-from ...results.layouts.si_variables import si_name_of, si_unit_of, si_variable
+from ...results.layouts.si_variables import si_name_of, si_unit_of, si_variable_and_values
 from ...results.layouts.variables import MISSING_STATUS, STATUS_VARIABLE, Variable
 from .column import Column, column_of, coordinate_column, marks_missing_items, missing_values_mask
 
@@ -22,8 +22,8 @@ list."""
 
 
 def indices_of_items(view: ResultView, variables: Sequence[Variable], is_sweep_wide: bool) -> ItemIndices:
-    """Indices of all items of a list that are not missing. is_sweep_wide: whether the list belongs to the
-    whole file, not to single points."""
+    """Indices of all items of the list with the variables `variables` that are not missing. is_sweep_wide:
+    whether the list belongs to the whole file, not to single points."""
     point_count = 1 if is_sweep_wide else view.variables["status"].size
     is_present: NDArray[np.bool_] = np.zeros((), bool)
     for variable in variables:
@@ -59,7 +59,8 @@ def point_columns(
 def list_columns(
     view: ResultView, variables: Sequence[Variable], rows: ItemIndices, is_sweep_wide: bool
 ) -> Iterator[Column]:
-    """Yields the columns of a list: coordinates of the items, then the variables."""
+    """Yields the columns of a list: coordinates of the items, then the variables. rows: result of
+    `indices_of_items`. is_sweep_wide: as in `indices_of_items`."""
     names = variables[0].extra_dimensions
     for name, item_indices in zip(names, rows[1:], strict=True):
         yield coordinate_column(
@@ -109,7 +110,7 @@ def si_columns(
         si = si_unit_of(variable, is_force_load)
         is_convertible = {*si.factors, *si.divisors} <= quantities.keys()
         if si.unit and is_convertible and si_name_of(variable.name, si.unit) not in view.variables:
-            si_values, values = si_variable(variable, column.values, quantities, is_force_load)
+            si_values, values = si_variable_and_values(variable, column.values, quantities, is_force_load)
             yield replace(column_of(si_values, values), missing_mask=column.missing_mask)
 
 
@@ -122,7 +123,7 @@ def varying_quantity_columns(view: ResultView, rows: ItemIndices) -> Iterator[Co
 
 
 def quantity_column(name: str, values: NDArray) -> Column:
-    """Column of an arm's quantity `name`, with values of shape (rows,)."""
+    """Column of an arm's quantity `name`. values: in SI units, (rows,)."""
     column = coordinate_column(name, *ARM_FILE_VARIABLES[name][:2], values)
     return replace(column, flag_meanings=dict(enumerate(DRAG_ESTIMATE_NAMES))) if name == "drag" else column
 
@@ -139,8 +140,8 @@ def _axis_indices(view: ResultView, parameter_name: str) -> NDArray[np.int64]:
 
 
 def arm_quantities_at_points(view: ResultView) -> dict[str, NDArray]:
-    """Quantities of an arm at all points, (points,) each, by name, except quantities that vary along a row of
-    a diagram."""
+    """Quantities of an arm at all points, in SI units, (points,) each, by name, except quantities that vary
+    along a row of a diagram."""
     point_count = view.variables["status"].size
     columns = {}
     for name, values in view.quantities.items():

@@ -62,9 +62,9 @@ DEFAULT_TABLE = {
 class TableContents:
     """Variables of a result, divided into tables.
 
-    point_variables: variables with one value per point, which are columns of all tables. variables_by_list:
-    variables of each list, by name of the table. sweep_wide_lists: names of lists that belong to the whole
-    file, not to single points."""
+    point_variables: variables with one value per point, which are columns of all tables except sweep-wide
+    lists. variables_by_list: variables of each list, by name of the table. sweep_wide_lists: names of lists
+    that belong to the whole file, not to single points."""
 
     point_variables: tuple[Variable, ...]
     variables_by_list: dict[str, tuple[Variable, ...]]
@@ -76,7 +76,7 @@ class TableContents:
         branches = (BRANCHES_TABLE,) if self.variables_by_list.keys() >= BRANCHES_TABLE_PARTS else ()
         return (POINTS_TABLE, *branches, *self.variables_by_list)
 
-    def list_dimensions(self, table: str) -> tuple[str, ...]:
+    def dimensions_of_list(self, table: str) -> tuple[str, ...]:
         """Dimensions of the list `table`, without the dimensions of the points; empty for other tables."""
         return self.variables_by_list[table][0].extra_dimensions if table in self.variables_by_list else ()
 
@@ -133,7 +133,7 @@ def chosen_table(
     holding |= {
         name: list_name
         for list_name in contents.variables_by_list
-        for name in contents.list_dimensions(list_name)
+        for name in contents.dimensions_of_list(list_name)
     }
     lists = list(dict.fromkeys(holding[name] for name in columns if name in holding))
     if set(lists) == BRANCHES_TABLE_PARTS:

@@ -130,8 +130,8 @@ class Tables:
 def _order_along_branches(
     view: ResultView, cycles: ItemIndices, special_points: ItemIndices
 ) -> NDArray[np.int64]:
-    """Order of the cycles, followed by the special points, along the branches: a special point follows the
-    cycle that precedes it on the branch."""
+    """Indices, (cycles + special points,), that sort a list of all cycles, then all special points, along the
+    branches: a special point follows the cycle that precedes it on the branch."""
     branches = [
         view.flattened_by_point("branch")[cycles],
         view.flattened_by_point("special_branch")[special_points],

@@ -15,10 +15,9 @@ COLUMN_UNITS = {"seconds": "s", "error": "1"}
 
 
 def write_measurements(path: Path, tables: Mapping[str, Table], attributes: Mapping[str, str]) -> None:
-    """Writes the table of every benchmark study to `path`, a group for each study with a dataset for each
-    column, (measurements,) each, and `attributes` as attributes of the file.
-
-    Raises EnvironmentIncomplete if writing fails.
+    """Writes `tables`, the tables of benchmark studies by name of the study, to the file `path`: a group for
+    each study, with a dataset for each column, (measurements,) each. `attributes` become attributes of the
+    file. Raises EnvironmentIncomplete if writing fails.
     """
     try:
         with h5py.File(path, "w") as file:

@@ -134,8 +134,8 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
 
 def _dimensions(name: str, dataset: h5py.Dataset) -> list[str]:
     """Names of a variable's dimensions, read from its attributes. The only dimension of a coordinate has the
-    name of the coordinate. A scalar has no dimensions. ValueError if the attributes are damaged. HDF5's own
-    functions for dimensions are not used, because they crash on damaged attributes."""
+    name of the coordinate. A scalar has no dimensions. Raises ValueError if the attributes are damaged.
+    HDF5's own functions for dimensions are not used, because they crash on damaged attributes."""
     attributes = dataset.attrs
     name_text = printable_name(name, 40)
     changed = ValueError(f"the dimensions of {name_text} were changed after rodsweep wrote them")

@@ -50,7 +50,7 @@ class FilePlan:
     """Returns variables computed from the variables of all points; called when no point is missing."""
 
     @property
-    def dimensions(self) -> tuple[str, ...]:
+    def point_dimension_names(self) -> tuple[str, ...]:
         """Names of the dimensions of the points."""
         return self.layout.dimensions(is_list=not self.points.axes)
 
@@ -62,11 +62,11 @@ class FilePlan:
 
 @dataclass(frozen=True, slots=True)
 class FinalAdditions:
-    """Contents that complete a file with all points. variables: variables that do not belong to single
-    points. changed_points: new values of the variables of points, by name, by flat index. failure_reasons:
-    lines that say why some of these points failed."""
+    """Contents that complete a file with all points. sweep_wide_variables: variables that do not belong to
+    single points. changed_points: by flat index of a point, new values of its variables by name.
+    failure_reasons: lines that say why some of these points failed."""
 
-    variables: Sequence[FilledVariable] = ()
+    sweep_wide_variables: Sequence[FilledVariable] = ()
     changed_points: Mapping[int, Mapping[str, NDArray[Any]]] = field(default_factory=dict)
     failure_reasons: Sequence[str] = ()
 
@@ -84,7 +84,9 @@ def create_file(path: Path, plan: FilePlan) -> None:
             _write_dimension_scale(file, name, plan.coordinates.get(name, np.arange(1, length + 1)))
         for variable in plan.layout.variables:
             dataset = _new_dataset(file, variable, plan.points.shape + plan.layout.point_shape(variable))
-            _write_attributes(file, dataset, variable, (*plan.dimensions, *variable.extra_dimensions))
+            _write_attributes(
+                file, dataset, variable, (*plan.point_dimension_names, *variable.extra_dimensions)
+            )
         add_variables(file, constants)
         add_variables(
             file,
@@ -150,8 +152,9 @@ def _write_dimension_scale(
 
 
 def _new_dataset(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> h5py.Dataset:
-    """New contiguous dataset, allocated and filled when it is created, so that its offset in the file is
-    final: `rodsweep.results.file.points` reads and writes points at this offset."""
+    """New contiguous dataset of `variable`, of the shape `shape`, allocated and filled when it is created, so
+    that its offset in the file is final: `rodsweep.results.file.points` reads and writes points at this
+    offset."""
     creation = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
     creation.set_layout(h5py.h5d.CONTIGUOUS)
     # By default HDF5 allocates at the first write, and no offset would exist before.

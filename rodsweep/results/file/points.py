@@ -18,9 +18,9 @@ from ...sweep.points.points import Points
 from ...sweep.points.ranges import IndexRange, merged_ranges
 from ..layouts.variables import MISSING_STATUS, Layout
 
-MAX_BLOCK_POINTS = 1 << 16
+MAX_READ_BLOCK_POINTS = 1 << 16
 """Maximum number of points in a block that is read at once."""
-MAX_BLOCK_BYTES = 1 << 26
+MAX_READ_BLOCK_BYTES = 1 << 26
 """Maximum size of a block that is read at once, in bytes; a block has fewer points if their records are
 large."""
 
@@ -29,14 +29,14 @@ def iterate_statuses(path: Path, block_size: int | None = None) -> Iterator[tupl
     """Yields (flat index of the first point, statuses of n consecutive points, (n,)) until all points are
     read.
 
-    block_size: number of points per step; MAX_BLOCK_POINTS by default.
+    block_size: number of points per step; MAX_READ_BLOCK_POINTS by default.
     """
     with h5py.File(path, "r") as file:
         status_dataset = file["status"]
         offset = status_dataset.id.get_offset()
         dtype = status_dataset.dtype
         point_count = status_dataset.size
-    block_size = block_size or MAX_BLOCK_POINTS
+    block_size = block_size or MAX_READ_BLOCK_POINTS
     with path.open("rb") as stream:
         for start in range(0, point_count, block_size):
             stream.seek(offset + start * dtype.itemsize)
@@ -62,28 +62,28 @@ def records_to_add(path: Path, other_path: Path, layout: Layout) -> Iterator[np.
         for (start, statuses), (_, other_statuses) in pairs
     )
     blocks = ((start, is_missing & is_in_other) for start, is_missing, is_in_other in masks)
-    yield from _selected_records(other_path, layout, blocks)
+    yield from _unchanged_selected_records(other_path, layout, blocks)
 
 
 def stored_records(path: Path, layout: Layout) -> Iterator[np.ndarray]:
     """Yields records, (n,), of all computed points of a file with the given layout."""
     statuses = iterate_statuses(path, _points_per_block(layout))
     blocks = ((start, status != MISSING_STATUS) for start, status in statuses)
-    yield from _selected_records(path, layout, blocks)
+    yield from _unchanged_selected_records(path, layout, blocks)
 
 
 def _points_per_block(layout: Layout) -> int:
     """Number of points in a block that is read at once, for the record size of a layout."""
     # At least one point, however large its record.
-    return min(MAX_BLOCK_POINTS, MAX_BLOCK_BYTES // layout.record_dtype.itemsize + 1)
+    return min(MAX_READ_BLOCK_POINTS, MAX_READ_BLOCK_BYTES // layout.record_dtype.itemsize + 1)
 
 
-def _selected_records(
+def _unchanged_selected_records(
     path: Path, layout: Layout, blocks: Iterable[tuple[int, np.ndarray]]
 ) -> Iterator[np.ndarray]:
-    """Yields records, (n,), of selected points that were not changed after all points were solved; blocks:
-    (flat index of the first point, mask of points)."""
-    changed = _changed_point_indices(path, layout)
+    """Yields records, (n,), of selected points of the file `path` that were not changed after all points were
+    solved. blocks: (flat index of the first point of a block, mask of the selected points)."""
+    changed = _indices_changed_after_solve(path, layout)
     offsets = _variable_offsets(path, layout)
     with path.open("rb") as stream:
         for start, mask in blocks:
@@ -102,7 +102,7 @@ def _selected_records(
 
 
 def records_at(path: Path, index: np.ndarray, layout: Layout) -> np.ndarray:
-    """Records, (n,), of a file with the given layout at flat indices, (n,)."""
+    """Records, (n,), of a file with the given layout at the flat indices `index`, (n,)."""
     records = np.empty(len(index), layout.record_dtype)
     records["index"] = index
     offsets = _variable_offsets(path, layout)
@@ -116,7 +116,7 @@ def records_at(path: Path, index: np.ndarray, layout: Layout) -> np.ndarray:
 
 
 def records_of_points(points: Mapping[int, Mapping[str, Any]], layout: Layout) -> np.ndarray:
-    """Records, (n,), of points from the values of their variables by name, by flat index."""
+    """Records, (n,), made from `points`: by flat index of the point, the values of its variables by name."""
     records = np.empty(len(points), layout.record_dtype)
     for record, (index, values) in zip(records, points.items(), strict=True):
         record["index"] = index
@@ -170,7 +170,7 @@ def write_records(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> b
     return any_written
 
 
-def _changed_point_indices(path: Path, layout: Layout) -> np.ndarray:
+def _indices_changed_after_solve(path: Path, layout: Layout) -> np.ndarray:
     """Flat indices of the points that were changed after all points were solved, (n,)."""
     with h5py.File(path, "r") as file:
         if layout.changed_points_variable and layout.changed_points_variable in file:

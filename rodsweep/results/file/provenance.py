@@ -22,7 +22,7 @@ MAX_ATTRIBUTE_LENGTH = 60_000
 """Maximum number of characters of an attribute; HDF5 allows 64 kB."""
 RANK_STATISTICS_ATTRIBUTES = ("rank_points", "rank_busy_seconds", "rank_idle_seconds")
 """Names of the attributes with the work statistics of each rank of the last run."""
-KERNELS_ATTRIBUTE = "blas_kernels"
+BLAS_KERNELS_ATTRIBUTE = "blas_kernels"
 """Name of the attribute with the BLAS kernels that computed the points of a file in all runs, a kernel per
 line, named by `rodsweep.solve.backend.petsc.blas_description`."""
 FAILURE_REASONS_ATTRIBUTE = "failure_reasons"
@@ -31,8 +31,9 @@ has parameters, status and reason."""
 MESSAGE_NUMBER_PATTERN = re.compile(r"\d[\d.]*(?:e[+-]?\d+)?")
 """Matches a number in a message. Messages that differ only in numbers are treated as the same reason of
 failure."""
-MIN_EXAMPLE_DIGITS = 9
-"""Number of digits of the computed parameters of a failed point, unless another point would read the same."""
+FAILED_POINT_PARAMETER_DIGITS = 9
+"""Number of digits shown of a computed parameter of a failed point, unless another point would read the
+same."""
 MAX_TYPED_DIGITS = 15
 """Largest number of digits of parameters that are shown as typed."""
 MAX_FAILURE_REASONS = 20
@@ -64,11 +65,11 @@ def provenance() -> dict[str, str]:
 
 def blas_kernels_in(attributes: Mapping[str, Any]) -> list[str]:
     """Names of the BLAS kernels in the attributes of a result file."""
-    return str(attributes.get(KERNELS_ATTRIBUTE, KERNEL_NOT_RECORDED)).splitlines()
+    return str(attributes.get(BLAS_KERNELS_ATTRIBUTE, KERNEL_NOT_RECORDED)).splitlines()
 
 
 def merged_blas_kernels(*kernel_texts: Iterable[str]) -> str:
-    """Value of KERNELS_ATTRIBUTE for a file with points computed by the kernels in the lists
+    """Value of BLAS_KERNELS_ATTRIBUTE for a file with points computed by the kernels in the lists
     `kernel_texts`."""
     return "\n".join(sorted({kernel for kernels in kernel_texts for kernel in kernels}))
 
@@ -89,13 +90,16 @@ def example_failure_sentence(failure: str, columns: Mapping[str, Array]) -> str:
 
 
 def _parameter_text(value: float, values: Array) -> str:
-    """A parameter of a failed point: as typed, else with MIN_EXAMPLE_DIGITS digits, or with all digits if
-    another of `values`, (points,), has the same text."""
+    """The value `value` of a parameter of a failed point as text: as typed if possible, else with
+    FAILED_POINT_PARAMETER_DIGITS digits, or with all digits if another of `values`, (points,), has the same
+    text."""
     if float(typed_text := f"{value:.{MAX_TYPED_DIGITS}g}") == value:
         return typed_text
-    text = f"{value:.{MIN_EXAMPLE_DIGITS}g}"
-    near = list_of(values[np.isclose(values, value, rtol=10.0 ** (1 - MIN_EXAMPLE_DIGITS), atol=0)])
-    is_shared = any(other != value and f"{other:.{MIN_EXAMPLE_DIGITS}g}" == text for other in near)
+    text = f"{value:.{FAILED_POINT_PARAMETER_DIGITS}g}"
+    near = list_of(
+        values[np.isclose(values, value, rtol=10.0 ** (1 - FAILED_POINT_PARAMETER_DIGITS), atol=0)]
+    )
+    is_shared = any(other != value and f"{other:.{FAILED_POINT_PARAMETER_DIGITS}g}" == text for other in near)
     return repr(value) if is_shared else text
 
 
@@ -120,17 +124,16 @@ def joined_reasons_attribute(*reason_texts: str) -> dict[str, str]:
 
 
 def updated_reasons_attribute(lines: Iterable[str], attributes: Mapping[str, Any]) -> dict[str, str]:
-    """Dict with the attribute FAILURE_REASONS_ATTRIBUTE after new failures.
-
+    """Dict with the attribute FAILURE_REASONS_ATTRIBUTE after new failures, with the new lines `lines`.
     attributes: attributes of the file, with the reasons of earlier runs.
     """
     # The newest examples first: an earlier one may be a point that has been computed anew.
     return joined_reasons_attribute(*lines, str(attributes.get(FAILURE_REASONS_ATTRIBUTE, "")))
 
 
-def several_kernels_warning(attribute: str) -> str:
+def several_blas_kernels_warning(attribute: str) -> str:
     """Warning that several BLAS kernels computed the points of a file; empty for a single kernel. attribute:
-    value of KERNELS_ATTRIBUTE."""
+    value of BLAS_KERNELS_ATTRIBUTE."""
     kernels = attribute.splitlines()
     if len(kernels) < 2:
         return ""
@@ -141,11 +144,14 @@ def several_kernels_warning(attribute: str) -> str:
 
 
 def merged_history(attribute_sets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Attributes of a merged file that describe the runs that computed its points."""
+    """Attributes of a merged file that describe the runs that computed its points. attribute_sets: attributes
+    of the source files."""
     history: dict[str, Any] = {
-        # The merged file is no shard any more.
+        # The merged file is no longer a shard.
         "shard": "",
-        KERNELS_ATTRIBUTE: merged_blas_kernels(*map(blas_kernels_in, attribute_sets))[:MAX_ATTRIBUTE_LENGTH],
+        BLAS_KERNELS_ATTRIBUTE: merged_blas_kernels(*map(blas_kernels_in, attribute_sets))[
+            :MAX_ATTRIBUTE_LENGTH
+        ],
     }
     reasons = (
         str(attributes_of_file.get(FAILURE_REASONS_ATTRIBUTE, "")) for attributes_of_file in attribute_sets

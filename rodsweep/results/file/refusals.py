@@ -32,9 +32,8 @@ def require_disk_space(path: Path, plan: FilePlan) -> None:
 
 
 def header_of_existing_file(path: Path, plan: FilePlan, journals: Path) -> ResultHeader:
-    """Header of the existing file at `path`, where the file of a plan belongs.
-
-    Raises InputError unless the existing file is a complete result.
+    """Header of the existing file at `path`, where the file of a plan belongs. Raises InputError unless the
+    existing file is a complete result. journals: journal directory of `path`.
     """
     if not path.is_file():
         raise InputError(f"{path} is not a file; choose another file with -o")
@@ -51,7 +50,7 @@ def header_of_existing_file(path: Path, plan: FilePlan, journals: Path) -> Resul
 
 def require_same_config(header: ResultHeader, plan: FilePlan, journals: Path) -> None:
     """Raises InputError for an existing file, described by `header`, whose config differs from the config of
-    the plan."""
+    the plan. journals: journal directory of this file."""
     change = config_change_text(header.config, plan.config)
     remedies_clause = _remedies_clause(plan, journals)
     try:
@@ -63,7 +62,8 @@ def require_same_config(header: ResultHeader, plan: FilePlan, journals: Path) ->
 
 
 def _remedies_clause(plan: FilePlan, journals: Path) -> str:
-    """Clause that tells the user what to do with a file that is in the way of the result file."""
+    """Clause that tells the user what to do with a file that is in the way of the result file of `plan`.
+    journals: journal directory of this file."""
     if journals_with_fingerprint(journals, plan.fingerprint):
         return f"move this file away, and the same command will use the points in {journals}"
     return "choose another file with -o, or replace it with --fresh"

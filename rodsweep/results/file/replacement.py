@@ -16,16 +16,16 @@ from ..run.journal import journal_directory
 from .seal import seal
 
 LOCK_TIMEOUT = 5.0
-"""Seconds to wait for the lock before InputError is raised, because ranks of a killed launcher end a moment
-later."""
+"""Seconds to wait for the lock before InputError is raised; ranks end a moment later than a killed
+launcher."""
 FileIdentity = tuple[int, ...]
 """(device, inode, size, time of change): changes when a file is replaced or written; empty if there is no
 file."""
 
 
 def file_identity(path: Path) -> FileIdentity:
-    """Identity of the file at `path`, read from the disk; () if there is no file, or its status cannot be
-    read."""
+    """Identity of the file at `path`, read from the disk; () if there is no file, or if the status of the
+    file cannot be read."""
     try:
         status = path.stat()
     except OSError:
@@ -35,9 +35,9 @@ def file_identity(path: Path) -> FileIdentity:
 
 @contextmanager
 def disk_errors_as_refusals(path: Path, kept_clause: Callable[[], str] = str) -> Iterator[None]:
-    """Context that turns disk errors (OSError, or RuntimeError from HDF5) into EnvironmentIncomplete.
-
-    kept_clause: function that returns a clause, for the message, on the data that are saved.
+    """Context that turns disk errors (OSError, or RuntimeError from HDF5) into EnvironmentIncomplete. path:
+    the file that is written. kept_clause: function that returns a clause, for the message, on the data that
+    are saved.
     """
     try:
         yield
@@ -65,7 +65,7 @@ class FileReplacement:
     def writing_new_file(self, source: Path | None) -> Iterator[Path]:
         """Context for writing a new result file; at its end the new file is sealed and replaces the old file.
 
-        Yields the path of the new file: a copy of `source`, or no file for None.
+        Yields the path of the new file: a copy of `source`, or a file yet to be created if `source` is None.
         """
         # The directory may have been moved or deleted meanwhile.
         self.journal_directory.mkdir(parents=True, exist_ok=True)
@@ -96,7 +96,8 @@ class ResultFileLock:
     """Lock on a result file: a file in the journal directory. The lock creates and removes this directory."""
 
     def __init__(self, directory: Path, path: Path):
-        """Takes the lock on the file `path`; raises InputError if another run has the lock."""
+        """Takes the lock on the file `path`; raises InputError if another run has the lock. directory:
+        journal directory of the file."""
         self.directory = directory
         patience = time.monotonic() + LOCK_TIMEOUT
         while True:

@@ -28,8 +28,8 @@ from ..run.journal import (
     journals_without_fingerprint,
     kept_points_clause,
     move_journals_aside,
+    read_failure_reasons,
     read_journals,
-    read_reasons,
 )
 from .combination.extension import extension_of
 from .creation import NO_FINAL_VARIABLES, FilePlan, FinalAdditions, add_variables, create_file
@@ -45,12 +45,12 @@ BACKUP_GLOB = "before-*.h5"
 
 
 class ResultFileWriter:
-    """Result file of one run. Only the first rank has a store, and only one run at a time can open a file."""
+    """Result file of one run. Only the first rank has a writer; only one run at a time can open a file."""
 
     def __init__(self, path: Path, plan: FilePlan, replaces: bool = False, extends: bool = False):
-        """Opens the file of a plan or creates the file; raises InputError for a file of another plan.
-        replaces: whether to replace an existing result file of any plan. extends: whether to extend the file
-        of a smaller config to the plan, reusing its points where possible."""
+        """Opens the file of a plan at `path` or creates the file; raises InputError for a file of another
+        plan. replaces: whether to replace an existing result file of any plan. extends: whether to extend the
+        file of a smaller config to the plan, reusing its points where possible."""
         self.path = path
         self.plan = plan
         self.notes: list[str] = []
@@ -84,7 +84,8 @@ class ResultFileWriter:
         delete_matching_files(self.journal_directory, JOURNAL_GLOB)  # the remaining journals have no points
 
     def _create(self, replaces: bool) -> None:
-        """Creates the file of the plan, with its journals' points unless `replaces`; raises InputError."""
+        """Creates the file of the plan and, unless `replaces`, adds the points of its journals. Raises
+        InputError if the file at its path is not a rodsweep result."""
         if self.path.exists() and not is_rodsweep_or_damaged_file(self.path):
             raise InputError(f"{self.path} is not a result file, so --fresh does not replace it")
         require_disk_space(self.path, self.plan)
@@ -100,7 +101,8 @@ class ResultFileWriter:
             self.notes.append("the file was missing; a new file holds the points of its journal")
 
     def _extend(self, header: ResultHeader) -> None:
-        """Replaces the file of a smaller config by the plan's file, with all points that can be reused."""
+        """Replaces the file of a smaller config, described by `header`, by the plan's file, with all points
+        that can be reused."""
         extension = extension_of(header, points_of_file(self.path, header.layout), self.plan)
         require_disk_space(self.path, self.plan)
         # Points that are only in the journals belong to the smaller config too.
@@ -134,7 +136,7 @@ class ResultFileWriter:
         return copy
 
     def _move_aside(self, paths: Sequence[Path], noun: str) -> None:
-        """Moves `paths` out of the journal directory, and notes the new place."""
+        """Moves `paths` out of the journal directory; notes their new place. noun: name of the files."""
         if paths:
             self.notes.append(f"{noun} are kept in {move_journals_aside(self.journal_directory, paths)}")
 
@@ -156,12 +158,12 @@ class ResultFileWriter:
             return missing_ranges(self.path)
 
     def finish(self, attributes: dict[str, Any], additions: FinalAdditions = NO_FINAL_VARIABLES) -> None:
-        """Stores journalled points, attributes, `additions`, and variables computed from all points."""
+        """Stores journalled points, `attributes`, `additions`, and variables computed from all points."""
         self.add_journals(attributes, additions)
 
     def add_journals(self, attributes: dict[str, Any], additions: FinalAdditions | None = None) -> None:
-        """Adds journalled points and attributes by one replacement; deletes the journals. additions: as for
-        `finish`; None if points are missing."""
+        """Adds journalled points and `attributes` to the file by one replacement; deletes the journals.
+        additions: as for `finish`; None if points are missing."""
         plan = self.plan
         with disk_errors_as_refusals(self.path, self._kept_points_clause):
             self._restore_missing_file()
@@ -197,12 +199,13 @@ class ResultFileWriter:
         additions: FinalAdditions | None = None,
     ) -> None:
         """Writes the records in `blocks`, (n,) each, of journals with the fingerprint into the file; deletes
-        the journals. additions: variables that end the file; None if points are missing."""
+        the journals. attributes: attributes of the file to change. additions: contents that complete the
+        file; None if points are missing."""
         with disk_errors_as_refusals(self.path, self._kept_points_clause):
             # Listed before they are read, so that a journal that appears later is not deleted unread.
             journals = journals_with_fingerprint(self.journal_directory, fingerprint)
             first_block = next(blocks, None)
-            reasons = read_reasons(self.journal_directory, layout, fingerprint)
+            reasons = read_failure_reasons(self.journal_directory, layout, fingerprint)
             reasons += additions.failure_reasons if additions else ()
             if first_block is not None or attributes:
                 with self.replacement.writing_new_file(self.path) as copy:
@@ -214,7 +217,7 @@ class ResultFileWriter:
                         with h5py.File(copy, "r+") as file:
                             if additions:
                                 point_variables = self.plan.variables_from_points(file)
-                                add_variables(file, (*additions.variables, *point_variables))
+                                add_variables(file, (*additions.sweep_wide_variables, *point_variables))
                             file.attrs.update(attributes | updated_reasons_attribute(reasons, file.attrs))
             for journal in journals:
                 journal.unlink(missing_ok=True)

@@ -65,10 +65,10 @@ def seal(path: Path) -> None:
 
 
 def has_valid_structure_checksum(path: Path) -> bool:
-    """Whether the HDF5 structures of the file match its checksum; False if the file has no checksum.
+    """True if the HDF5 structures of the file match its checksum, False if the file has no checksum.
 
-    Another program that writes the file removes the checksum. Raises ChecksumMismatch for a wrong checksum,
-    or OSError. Takes a millisecond.
+    Another program that writes the file removes the checksum. Raises ChecksumMismatch for a wrong or
+    unreadable checksum or a file that is too short, and OSError. Takes a millisecond.
     """
     with path.open("rb") as stream:
         end = _hdf5_end(stream)
@@ -84,7 +84,7 @@ def has_valid_structure_checksum(path: Path) -> bool:
         try:
             stored_checksums = json.loads(data[len(CHECKSUM_HEAD) :])
             ranges = [(int(start), int(length)) for start, length in stored_checksums["pieces"]]
-            # Before the checksum, since a writer that closes the file meanwhile is no damage.
+            # Before the checksum, because a writer that closes the file meanwhile does no damage.
             is_locked = _is_locked_for_writing(stream)
             is_valid = stored_checksums["end"] == end and stored_checksums["frame"] == _checksum(
                 stream, _complementary_ranges(ranges, end)
@@ -102,8 +102,8 @@ def has_valid_structure_checksum(path: Path) -> bool:
 
 
 def _is_locked_for_writing(stream: BinaryIO) -> bool:
-    """Whether HDF5 holds its lock for writing on the open file, in any process. Such a file has a mark that
-    its checksum does not cover."""
+    """Whether HDF5 holds its lock for writing on the open file, in any process. HDF5 writes a mark into such
+    a file, so that its checksum does not match."""
     try:
         fcntl.flock(stream, fcntl.LOCK_SH | fcntl.LOCK_NB)
     except BlockingIOError:
@@ -148,7 +148,7 @@ def _complementary_ranges(ranges: list[OffsetAndSize], end: int) -> Iterator[Off
 
 
 def _checksum(stream: BinaryIO, ranges: Iterator[OffsetAndSize]) -> int:
-    """CRC-32 of consecutive byte ranges of a file."""
+    """CRC-32 of the bytes of a file in `ranges`, taken in order without the gaps between the ranges."""
     checksum = 0
     for start, size in ranges:
         stream.seek(start)

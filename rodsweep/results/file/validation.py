@@ -47,7 +47,7 @@ class InvalidResultFile(InputError):
 @contextmanager
 def damage_as_refusals(path: Path) -> Iterator[None]:
     """Context that turns DAMAGE_EXCEPTIONS, which a damaged file or a file of another kind raises, into
-    `InvalidResultFile`."""
+    `InvalidResultFile`. path: the file, for the message."""
     try:
         yield
     except DAMAGE_EXCEPTIONS as error:

@@ -16,10 +16,10 @@ from ..layouts.si_units import load_kind_of
 from ..layouts.variables import TYPED_UNIT_ATTRIBUTE
 from .content_digests import is_user_added
 from .current_state import (
+    failure_reasons_with_journals,
     insert_records,
-    journalled_points,
     read_file_and_journals,
-    reasons_attribute_with_journals,
+    records_only_in_journals,
 )
 from .validation import damage_as_refusals, escape_control_characters, open_checked, refuse_absent
 
@@ -97,7 +97,8 @@ class ResultView:
 
     @property
     def parameter_values(self) -> dict[str, np.ndarray]:
-        """Values of each parameter, (n,), by name: an axis of a grid, or a column of a list."""
+        """Values of each parameter by name: an axis of a grid, (n,); a column of a list, (n,); or an array
+        over a grid over an arm's quantities."""
         return {name: self.variables[name] for name in PARAMETERS if name in self.variables}
 
     @property
@@ -187,7 +188,7 @@ def status_sentences_in(attributes: Mapping[str, Any]) -> dict[str, str]:
 def read_view(path: Path) -> ResultView:
     """View of the result file at `path`, which stays open, with journalled points.
 
-    Raises InputError if the file is no result.
+    Raises InputError if the file is not a result.
     """
     return read_file_and_journals(path, lambda: _view(path))
 
@@ -201,7 +202,7 @@ def _view(path: Path) -> ResultView:
         status = file["status"]
         words = str(escape_control_characters(status.attrs["flag_meanings"])).split()
         flags = dict(zip((int(value) for value in status.attrs["flag_values"]), words, strict=True))
-        recent = journalled_points(header, status[...].ravel())
+        recent = records_only_in_journals(header, status[...].ravel())
         variables = FileVariables(path, file, recent)
         stored = (name for name in ARM_FILE_VARIABLES if name in file)
         units = {
@@ -210,7 +211,7 @@ def _view(path: Path) -> ResultView:
             if TYPED_UNIT_ATTRIBUTE in file[name].attrs
         }
     layout = header.layout
-    attributes = header.attributes | reasons_attribute_with_journals(header)
+    attributes = header.attributes | failure_reasons_with_journals(header)
     return ResultView(
         path, attributes, variables, layout.parameters, flags, len(recent), layout.arm_axes, units
     )

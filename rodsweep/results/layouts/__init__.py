@@ -8,7 +8,7 @@ from typing import Any
 from . import branch, criticality, limit_cycle, modes, phase_diagram, spectrum, thresholds
 from .rod_properties import optional_parameters_in
 from .si_variables import with_si_variables
-from .variables import ExtensionRule, Layout, Variable
+from .variables import Layout, ReuseRule, Variable
 
 LAYOUT_MODULES = {
     "spectrum": spectrum,
@@ -22,10 +22,12 @@ LAYOUT_MODULES = {
 LAYOUT_MAKERS: dict[str, Callable[[dict[str, Any]], Layout]]
 LAYOUT_MAKERS = {task: module.layout for task, module in LAYOUT_MODULES.items()}
 """Function from a resolved config to the layout of the file, by task."""
-EXTENSION_RULES: dict[str, dict[str, ExtensionRule]]
-EXTENSION_RULES = {task: module.REUSE_RULES_OF_INCREASED_OPTIONS for task, module in LAYOUT_MODULES.items()}
-"""Rules for the options of which a larger value requests more data of a point, by task and option. A file
-cannot be extended if any other option changes."""
+REUSE_RULES_BY_TASK: dict[str, dict[str, ReuseRule]]
+REUSE_RULES_BY_TASK = {
+    task: module.REUSE_RULES_OF_INCREASED_OPTIONS for task, module in LAYOUT_MODULES.items()
+}
+"""Rules, by task and option, for the options whose larger values request more data of a point. A file cannot
+be extended if any other option changes."""
 SWEEP_WIDE_VARIABLE_MAKERS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
     "spectrum": spectrum.sweep_wide_variables,
     "modes": lambda config, is_grid: spectrum.FORCE_THRESHOLD_VARIABLES,
@@ -49,7 +51,8 @@ def layout_of(config: dict[str, Any]) -> Layout:
 def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables of a file that belong to all points together, for a resolved config; empty for most tasks.
 
-    is_grid: whether the points are a grid. `extra` of these variables has all their dimensions.
+    is_grid: whether the points are a grid. The field `extra_dimensions` of these variables names all their
+    dimensions.
     """
     make_variables = SWEEP_WIDE_VARIABLE_MAKERS.get(config["task"])
     return make_variables(config, is_grid) if make_variables else ()

@@ -2,7 +2,7 @@
 their curves along a third parameter."""
 
 from ...model.parameters import PARAMETERS
-from .criticality import LANDAU_UNIT, SLOPE_UNIT, criticality_variable
+from .criticality import GROWTH_SLOPE_UNIT, LANDAU_UNIT, criticality_variable
 from .variables import (
     ANGULAR_UNIT,
     Variable,
@@ -18,8 +18,8 @@ list."""
 
 
 def criticality_variables(line_parameter: str, row_parameter: str) -> dict[str, Variable]:
-    """Variables, by name, of the sign of Re c along Hopf curves, and of its zeros, for
-    `phase_diagram.criticality`. line_parameter, row_parameter: parameters."""
+    """Variables, by name, that `phase_diagram.criticality` stores: sign of Re c along Hopf curves, and zeros
+    of Re c (c: Landau coefficient). line_parameter, row_parameter: names of the parameters of the diagram."""
     units = {name: PARAMETERS[name].unit for name in (line_parameter, row_parameter)}
     axial_drag_meaning = "axial drag of curve_criticality and bautin_*"
     frequency_meaning = "angular frequency of the pair at the generalised Hopf point"
@@ -36,8 +36,10 @@ def criticality_variables(line_parameter: str, row_parameter: str) -> dict[str, 
             *(real_variable(f"bautin_{name}", units[name], f"{name} where Re c = 0") for name in units),
             *(real_variable(f"bautin_{name}_error", units[name], f"{error_meaning}{name}") for name in units),
             real_variable("bautin_frequency", ANGULAR_UNIT, frequency_meaning),
-            real_variable("bautin_growth_slope_real", SLOPE_UNIT, "d(growth rate)/dF of the pair"),
-            real_variable("bautin_growth_slope_imag", SLOPE_UNIT, "d(angular frequency)/dF of the pair"),
+            real_variable("bautin_growth_slope_real", GROWTH_SLOPE_UNIT, "d(growth rate)/dF of the pair"),
+            real_variable(
+                "bautin_growth_slope_imag", GROWTH_SLOPE_UNIT, "d(angular frequency)/dF of the pair"
+            ),
             real_variable("bautin_landau_imag", LANDAU_UNIT, "imaginary part of the Landau coefficient c"),
         ),
         integer_variable("bautin_unlocated", unlocated_meaning),

@@ -9,8 +9,8 @@ from .variables import (
     NEW_SOLVE_RULE,
     SECONDS_VARIABLE,
     STATUS_VARIABLE,
-    ExtensionRule,
     Layout,
+    ReuseRule,
     Variable,
     along_dimension,
     boolean_variable,
@@ -20,10 +20,10 @@ from .variables import (
 )
 
 CYCLE_DIMENSION = "branch_point"
-"""Dimension of the cycles of all branches."""
+"""Name of the dimension of the cycles of all branches."""
 SPECIAL_DIMENSION = "special"
-"""Dimension of the special points of all branches."""
-SPECIAL_MEANINGS = {
+"""Name of the dimension of the special points of all branches."""
+SPECIAL_POINT_MEANINGS = {
     "none": "unused entry: the list is longer than the number of special points",
     "hopf": "Hopf point: a branch of cycles begins or ends at the straight rod",
     "fold": "the branch turns back in the parameter; a multiplier is 1",
@@ -34,7 +34,7 @@ SPECIAL_MEANINGS = {
     "period_doubling": "a multiplier of a cycle without the symmetry is -1; cycles of twice the period begin",
 }
 """Meaning of every kind of special point, by word; the file stores the position in this table."""
-SPECIAL_KINDS = tuple(SPECIAL_MEANINGS)
+SPECIAL_KINDS = tuple(SPECIAL_POINT_MEANINGS)
 """Names of the kinds of special points, in the order of their stored numbers."""
 END_REASONS = ("none", "range_end", "crushed", "no_cycle_found", "list_full")
 """Names of the reasons why a branch ends at a special point of the kind `end`, in the order of their stored
@@ -84,8 +84,8 @@ def branch_cycle_variables(parameter_name: str) -> tuple[Variable, ...]:
 
 
 def followed_range_variables(parameter_name: str, prefix: str = "") -> tuple[Variable, Variable]:
-    """Variables of the range of the parameter in which branches are followed, whose names begin with
-    `prefix`."""
+    """Variables of the range of the parameter `parameter_name` in which branches are followed. prefix:
+    beginning of the variables' names."""
     unit = PARAMETERS[parameter_name].unit
     words = f"{parameter_name} up to which branches are followed beyond the range, if they may enter it again"
     return (
@@ -94,7 +94,7 @@ def followed_range_variables(parameter_name: str, prefix: str = "") -> tuple[Var
     )
 
 
-def special_variables(parameter_name: str) -> tuple[Variable, ...]:
+def special_point_variables(parameter_name: str) -> tuple[Variable, ...]:
     """Variables of the special points on all branches. parameter_name: name of the followed parameter."""
     unit = PARAMETERS[parameter_name].unit
     return along_dimension(
@@ -134,15 +134,15 @@ def special_variables(parameter_name: str) -> tuple[Variable, ...]:
     )
 
 
-def _list_length_rule(name: str) -> ExtensionRule:
+def _list_extension_rule(name: str) -> ReuseRule:
     """Rule for the maximum length of a list; the variable `name` is the number of its items. A stored list
     that is not full already has all items."""
-    return ExtensionRule(lambda records, old: records[name] < old)
+    return ReuseRule(lambda records, old: records[name] < old)
 
 
 REUSE_RULES_OF_INCREASED_OPTIONS = {
-    "cycles": _list_length_rule("point_count"),
-    "special": _list_length_rule("special_count"),
+    "cycles": _list_extension_rule("point_count"),
+    "special": _list_extension_rule("special_count"),
     "certify": NEW_SOLVE_RULE,
 }
 
@@ -165,7 +165,7 @@ def layout(config: dict[str, Any]) -> Layout:
         boolean_variable("certified", "whether the list of Hopf points is proved complete"),
         *followed_range_variables(parameter),
         *branch_cycle_variables(parameter),
-        *special_variables(parameter),
+        *special_point_variables(parameter),
         SECONDS_VARIABLE,
         STATUS_VARIABLE,
     )

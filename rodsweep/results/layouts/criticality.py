@@ -5,11 +5,11 @@ from typing import Any
 
 from ...model.parameters import NONLINEAR_ROD_PARAMETER_NAMES, PARAMETERS, parameter_names_except
 from .rod_properties import with_certified_long_name
-from .thresholds import CROSSING_LIST_EXTENSION_RULE, SEARCH_END_VARIABLES, search_variables
+from .thresholds import CROSSING_LIST_REUSE_RULE, SEARCH_END_VARIABLES, search_variables
 from .variables import ANGULAR_UNIT, NEW_SOLVE_RULE, Layout, Variable, along_dimension, real_variable
 
 FORCE_UNIT = PARAMETERS["F"].unit
-SLOPE_UNIT = "L^2/(k3 tau2)"
+GROWTH_SLOPE_UNIT = "L^2/(k3 tau2)"
 """Unit of the slope dw/dF of an eigenvalue."""
 LANDAU_UNIT = "1/(tau2 L^2)"
 """Unit of the Landau coefficient c."""
@@ -38,8 +38,10 @@ NORMAL_FORM_VARIABLES = along_dimension(
     real_variable(
         "crossing_frequency_error", ANGULAR_UNIT, "estimate of the absolute error of crossing_frequency"
     ),
-    real_variable("growth_slope_real", SLOPE_UNIT, "d(growth rate)/dF of the pair at the Hopf point"),
-    real_variable("growth_slope_imag", SLOPE_UNIT, "d(angular frequency)/dF of the pair at the Hopf point"),
+    real_variable("growth_slope_real", GROWTH_SLOPE_UNIT, "d(growth rate)/dF of the pair at the Hopf point"),
+    real_variable(
+        "growth_slope_imag", GROWTH_SLOPE_UNIT, "d(angular frequency)/dF of the pair at the Hopf point"
+    ),
     real_variable("growth_slope_error", "1", "estimate of the relative error of the complex slope dw/dF"),
     real_variable("landau_real", LANDAU_UNIT, "real part of the Landau coefficient c, for tip y = Re Z"),
     real_variable("landau_imag", LANDAU_UNIT, "imaginary part of the Landau coefficient c"),
@@ -55,7 +57,7 @@ NORMAL_FORM_VARIABLES = along_dimension(
     ),
     real_variable(
         "frequency_slope",
-        SLOPE_UNIT,
+        GROWTH_SLOPE_UNIT,
         "coefficient b: to leading order the angular frequency of the cycles is that of the Hopf point "
         "+ b (F - F_H)",
     ),
@@ -64,7 +66,7 @@ NORMAL_FORM_VARIABLES = along_dimension(
     Variable("elements", "<i2", 0, "1", "spectral elements used"),
     Variable("order", "<i2", 0, "1", "polynomial order used"),
 )
-REUSE_RULES_OF_INCREASED_OPTIONS = {"crossings": CROSSING_LIST_EXTENSION_RULE, "certify": NEW_SOLVE_RULE}
+REUSE_RULES_OF_INCREASED_OPTIONS = {"crossings": CROSSING_LIST_REUSE_RULE, "certify": NEW_SOLVE_RULE}
 
 
 def layout(config: dict[str, Any]) -> Layout:

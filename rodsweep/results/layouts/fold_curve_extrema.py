@@ -7,7 +7,8 @@ UNLOCATED_EXTREMA_VARIABLE = integer_variable(
     "cycle_extrema_unlocated",
     "number of extrema of the row parameter along curves of folds that could not be located",
 )
-"""A file without such extrema does not have this variable."""
+"""Number of extrema of the row parameter that could not be located; a file without such extrema does not have
+this variable."""
 
 
 def fold_curve_extremum_variables(line_parameter: str, row_parameter: str) -> dict[str, Variable]:

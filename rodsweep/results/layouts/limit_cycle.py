@@ -21,8 +21,8 @@ from .variables import (
     SECONDS_VARIABLE,
     STATUS_VARIABLE,
     UNKNOWN_COUNT_LONG_NAME_SUFFIX,
-    ExtensionRule,
     Layout,
+    ReuseRule,
     Variable,
     along_dimension,
     integer_variable,
@@ -40,11 +40,11 @@ POWER_UNIT = "k3/(L tau2)"
 """Dimensionless unit of a power."""
 STORED_MULTIPLIER_COUNT = 6
 """Number of stored nontrivial Floquet multipliers, the solver's `MULTIPLIER_LIST_SETTINGS.length`; NaN stands
-for a modulus below its `min_modulus`."""
-CYCLE_STATUSES = ("cycle", "unstable")
+for a missing multiplier, or for a modulus below `MULTIPLIER_LIST_SETTINGS.min_modulus`."""
+STATUS_NAMES_WITH_CYCLE = ("cycle", "unstable")
 """Names of the statuses of points with a limit cycle, stable or unstable."""
 SECOND_STABLE_STATES = ((-1, "not_known"), (0, "none_known"), (1, "straight"), (2, "cycle_possible"))
-"""(stored number, word) for a second stable state of the rod, besides the state that the solve reached."""
+"""(stored number, word) for each second stable state of the rod, besides the state that the solve reached."""
 CYCLE_VARIABLES = (
     real_variable("period", "tau2", "period of the limit cycle"),
     real_variable("frequency", ANGULAR_UNIT, "angular frequency of the limit cycle, 2 pi/period"),
@@ -133,13 +133,14 @@ TRANSIENT_VARIABLES = along_dimension(
     ),
 )
 HOPF_DIMENSION = "hopf"
-"""Dimension of the Hopf points on the lines of points of a file."""
+"""Name of the dimension of the Hopf points on the lines of points of a file."""
 HOPF_CROSSING_KINDS = ("none", "hopf", "hopf_reverse", "restabilization")
 """Names of the kinds of crossings at which a pair of eigenvalues crosses the imaginary axis."""
 
 
 def hopf_point_variables(names: Collection[str]) -> tuple[Variable, ...]:
-    """Variables of the Hopf points of the straight rod on lines of points."""
+    """Variables of the Hopf points of the straight rod on lines of points. names: parameters of the file, of
+    which the parameters of transverse motion are stored for each Hopf point."""
     place_clause = "at the Hopf point"
     parameters = [PARAMETERS[name] for name in TRANSVERSE_PARAMETER_NAMES if name in names]
     kinds = ((CROSSING_KINDS.index(kind), kind) for kind in HOPF_CROSSING_KINDS)
@@ -180,13 +181,13 @@ def hopf_point_variables(names: Collection[str]) -> tuple[Variable, ...]:
     )
 
 
-NEW_SOLVE_OF_CYCLES_RULE = ExtensionRule(lambda records, before: np.isnan(records["period"]))
+NEW_SOLVE_OF_CYCLES_RULE = ReuseRule(lambda records, before: np.isnan(records["period"]))
 """Rule for the options that set the stored data of a cycle: after an increase, every point with a cycle is
 solved again."""
 REUSE_RULES_OF_INCREASED_OPTIONS = {
     **dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), NEW_SOLVE_OF_CYCLES_RULE),
     "transient": NEW_SOLVE_RULE,
-    "time": ExtensionRule(NEW_SOLVE_OF_CYCLES_RULE.has_additional_data, ("tau2", "tau1")),
+    "time": ReuseRule(NEW_SOLVE_OF_CYCLES_RULE.has_additional_data, ("tau2", "tau1")),
 }
 
 

@@ -5,11 +5,11 @@ from typing import Any
 from ...model.parameters import PARAMETERS, TRANSVERSE_PARAMETER_NAMES, parameter_names_except
 from .bautin_points import bautin_curve_variables, criticality_variables
 from .branch import SPECIAL_KINDS, followed_range_variables
-from .detached_branches import DETACHED_ROW_NAME, DETACHED_ROW_VARIABLES_BY_NAME, LOST_CURVE_ENDS_VARIABLE
+from .detached_branches import DETACHED_ROW_VARIABLE, DETACHED_ROW_VARIABLES_BY_NAME, LOST_CURVE_ENDS_VARIABLE
 from .fold_curve_extrema import UNLOCATED_EXTREMA_VARIABLE, fold_curve_extremum_variables
 from .rod_properties import with_certified_long_name
 from .spectrum import UNSTABLE_COUNT_VARIABLE
-from .thresholds import CROSSING_LIST_EXTENSION_RULE, search_variables
+from .thresholds import CROSSING_LIST_REUSE_RULE, search_variables
 from .variables import (
     ANGULAR_UNIT,
     NEW_SOLVE_RULE,
@@ -25,7 +25,7 @@ from .variables import (
 
 STABILITY_CLASS_NAMES = ("monotone", "oscillatory", "flutter", "undecided", "crushed")
 STABILITY_CLASSES = ((-1, "missing"), *enumerate(STABILITY_CLASS_NAMES))
-"""(stored number, word) for the behaviour of the rod at a point of a phase diagram."""
+"""(stored number, word) for each behaviour of the straight rod at a point of a phase diagram."""
 BOUNDARY_CURVE_END_REASONS = {
     "none": "not an end of the curve",
     "edge": "the curve leaves the diagram",
@@ -40,7 +40,8 @@ BOUNDARY_CURVE_KINDS = ((0, "double"), (1, "hopf"))
 of Hopf points."""
 STABLE_STATE_NAMES = ("neither_known", "straight", "cycle", "both", "undecided", "crushed")
 STABLE_STATES = ((-1, "missing"), *enumerate(STABLE_STATE_NAMES))
-"""(stored number, word) for the stable states of the rod at a point of a phase diagram with cycles."""
+"""(stored number, word) for each set of stable states of the rod at a point of a phase diagram with
+cycles."""
 CYCLE_SPECIAL_DIMENSION = "cycle_special"
 """Name of the dimension of the special points on the branches of cycles of a row."""
 MAX_CYCLE_SPECIAL_POINTS = 64
@@ -59,12 +60,12 @@ CYCLE_CURVE_END_REASONS = {
 """Meaning of every reason why a curve of folds of cycles, or of torus points, ends, by word; the file stores
 the position in this table."""
 REUSE_RULES_OF_INCREASED_OPTIONS = dict.fromkeys(("certify", "cycles"), NEW_SOLVE_RULE) | {
-    "crossings": CROSSING_LIST_EXTENSION_RULE,
+    "crossings": CROSSING_LIST_REUSE_RULE,
     "curves": NO_NEW_SOLVE_RULE,
 }
 
 
-def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
+def plane_and_value_counts(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
     """Returns ((line, row), number of values by parameter) for a resolved config. line: name of the parameter
     that varies along each row. row: name of the parameter that differs between rows."""
     axes = config["parameters"]
@@ -76,10 +77,10 @@ def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
 
 def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables computed from all rows of a phase diagram together: all variables of curves and of
-    criticality, requested by the config or not, and variables of Bautin curves along the parameters in
-    `phase_diagram.bautin_along` only. is_grid: not used."""
-    (line, row), _ = plane_of(config)
-    variables = curve_variables(line, row) | criticality_variables(line, row)
+    criticality, even if the config does not request them, and variables of Bautin curves along the parameters
+    in `phase_diagram.bautin_along`. is_grid: not used."""
+    (line, row), _ = plane_and_value_counts(config)
+    variables = boundary_curve_variables(line, row) | criticality_variables(line, row)
     variables |= fold_curve_extremum_variables(line, row)
     variables |= {
         variable.name: variable for variable in (UNLOCATED_EXTREMA_VARIABLE, LOST_CURVE_ENDS_VARIABLE)
@@ -94,7 +95,7 @@ def layout(config: dict[str, Any]) -> Layout:
     """Layout of the result file of the task phase_diagram, for a resolved config. Each point is a row, that
     is, a line of values of one parameter."""
     options = config["phase_diagram"]
-    (line, _), sizes = plane_of(config)
+    (line, _), sizes = plane_and_value_counts(config)
     variables: tuple[Variable, ...] = (
         word_variable("class", "behaviour of the rod", STABILITY_CLASSES, line),
         integer_variable("unstable_count", UNSTABLE_COUNT_VARIABLE.long_name, line),
@@ -102,16 +103,16 @@ def layout(config: dict[str, Any]) -> Layout:
     )
     extents = {line: sizes[line], "crossing": options["crossings"]}
     if options["cycles"]:
-        variables += cycle_variables(line)
+        variables += cycle_row_variables(line)
         extents[CYCLE_SPECIAL_DIMENSION] = MAX_CYCLE_SPECIAL_POINTS
     variables = with_certified_long_name(variables, config, "crossings")
-    changed = DETACHED_ROW_NAME if options["cycles"] else ""
+    changed = DETACHED_ROW_VARIABLE if options["cycles"] else ""
     return Layout(variables, extents, parameter_names_except(line), (), options["curves"], changed)
 
 
-def cycle_variables(line_parameter: str) -> tuple[Variable, ...]:
-    """Variables of a row for `phase_diagram.cycles`: stable states, and special points of branches of
-    cycles."""
+def cycle_row_variables(line_parameter: str) -> tuple[Variable, ...]:
+    """Variables of a row for `phase_diagram.cycles`: stable states, and special points of branches of cycles.
+    line_parameter: parameter along the row."""
     unit = PARAMETERS[line_parameter].unit
     place_clause = "at the special point"
     absolute_error_meaning = "estimate of the absolute error of cycle_special_"
@@ -139,7 +140,7 @@ def cycle_variables(line_parameter: str) -> tuple[Variable, ...]:
 
 def cycle_curve_variables(line_parameter: str, row_parameter: str) -> dict[str, Variable]:
     """Variables, by name, of the curves of folds of cycles and torus points, for `phase_diagram.cycles`.
-    line_parameter, row_parameter: parameters."""
+    line_parameter: parameter along each row. row_parameter: parameter that differs between rows."""
     units = {name: PARAMETERS[name].unit for name in (line_parameter, row_parameter)}
     unit = units[line_parameter]
     kind_meaning = "kind of the special points on the curve, fold or torus"
@@ -167,9 +168,10 @@ def cycle_curve_variables(line_parameter: str, row_parameter: str) -> dict[str, 
     return {variable.name: variable for variable in variables}
 
 
-def curve_variables(line_parameter: str, row_parameter: str) -> dict[str, Variable]:
+def boundary_curve_variables(line_parameter: str, row_parameter: str) -> dict[str, Variable]:
     """Variables, by name, of the boundary curves of a phase diagram, their folds, their agreement with the
-    rows, and reference values of filament and partial beam. line_parameter, row_parameter: parameters."""
+    rows, and reference values of filament and partial beam. line_parameter: parameter along each row.
+    row_parameter: parameter that differs between rows."""
     kind_meaning = "kind of the points on the curve, double real eigenvalues or Hopf points"
     fold_parameter_meaning = "parameter that reverses its direction along the curve at the fold"
     filament_meaning = "Fc: F at which the filament (k1, k2 = inf, gamma3 = 0) flutters"

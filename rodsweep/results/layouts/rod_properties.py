@@ -15,8 +15,8 @@ def optional_parameters_in(config: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(name for name in OPTIONAL_PARAMETER_NAMES if name in names)
 
 
-def estimates_counts(config: Mapping[str, Any]) -> bool:
-    """Whether counts of unstable modes are estimates: for rods that vary along their length."""
+def has_estimated_counts(config: Mapping[str, Any]) -> bool:
+    """Whether counts of unstable modes are estimates, as for rods that vary along their length."""
     parameters = config.get("parameters", {})
     arm = parameters.get("arm", {})
     taper = parameters.get("taper")
@@ -29,7 +29,7 @@ def estimates_counts(config: Mapping[str, Any]) -> bool:
 def has_uniform_linear_rods(config: Mapping[str, Any]) -> bool:
     """Whether all rods are uniform and of linear material. Only then can a covering prove that the list of
     crossings is complete."""
-    return has_linear_law(config) and not estimates_counts(config)
+    return has_linear_law(config) and not has_estimated_counts(config)
 
 
 def has_linear_law(config: Mapping[str, Any]) -> bool:

@@ -11,7 +11,7 @@ from ...config.arm.axes import LOAD_KEYS
 from ...model.arm.quantities import (
     LOAD_NAME_BY_RELATIVE_LOAD,
     LOAD_NAMES,
-    LOAD_SCALE_NAMES,
+    LOAD_SCALE_NAME_BY_LOAD,
     UNITS_AND_EXAMPLES,
 )
 from .variables import ANGULAR_UNIT
@@ -51,7 +51,7 @@ SI_UNIT_BY_DIMENSIONLESS_UNIT = {
 }
 """SI units of the dimensionless units of time, length, energy and power."""
 FORCE_SI_UNIT_BY_LOAD = {
-    load: SIUnit(UNITS_AND_EXAMPLES[load][0], (LOAD_SCALE_NAMES[load],)) for load in LOAD_NAMES
+    load: SIUnit(UNITS_AND_EXAMPLES[load][0], (LOAD_SCALE_NAME_BY_LOAD[load],)) for load in LOAD_NAMES
 }
 """SI unit in which the follower force is stored, by name of the arm's load, "pressure" or "force"."""
 

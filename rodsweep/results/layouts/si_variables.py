@@ -46,9 +46,11 @@ HERTZ_NAMES_OF_THRESHOLDS = {
 }
 """Name of the variable in Hz, by name of the variable for the angular frequency at a threshold."""
 FORCE_VARIABLES_OF_BRANCHES = ("special_at", "special_error")
-"""Names of variables of the task branch that are forces for an arm, whose branches are followed in F only."""
+"""Names of variables of the task branch that are forces for an arm: its branches are followed along F
+only."""
 DIMENSIONS_STORED_IN_SI = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
-"""Extra dimensions of variables that are stored in SI units too; longer tables are stored once."""
+"""Extra dimensions of variables that are stored in SI units too; longer tables are stored dimensionless
+only."""
 NEGLECTED_EFFECTS = (
     "inertia_of_the_arm",
     "inertia_of_the_fluid",
@@ -59,7 +61,7 @@ NEGLECTED_EFFECTS = (
     "extension",
 )
 """Effects that the model neglects, named as in `rodsweep.model.arm.neglected` with underscores for blanks;
-extension is the effect compression of an arm under a pull, F < 0."""
+`extension` stands for the effect `compression` of an arm under a pull, F < 0."""
 UNKNOWN_VALIDITY_NUMBER = -1
 """Value of model_applies where the solver may have missed an unstable mode or a cycle."""
 VALIDITY_VARIABLES = (
@@ -129,7 +131,7 @@ def _si_long_name(variable: Variable, unit: str) -> str:
 
 
 def _stored_si_unit(variable: Variable, is_force: bool) -> SIUnit:
-    """SI unit in which a variable is also stored, or NO_SI_UNIT."""
+    """SI unit in which a variable is also stored, or NO_SI_UNIT. is_force: as in `si_unit_of`."""
     return (
         si_unit_of(variable, is_force) if variable.extra_dimensions in DIMENSIONS_STORED_IN_SI else NO_SI_UNIT
     )
@@ -146,11 +148,11 @@ def si_unit_of(variable: Variable, is_force: bool) -> SIUnit:
     return SI_UNIT_BY_DIMENSIONLESS_UNIT.get(variable.units, NO_SI_UNIT)
 
 
-def si_variable(
+def si_variable_and_values(
     variable: Variable, values: Array, quantities: Mapping[str, Array], is_force: bool
 ) -> tuple[Variable, Array]:
     """Returns (SI variable, its values, (n,)) for a dimensionless variable with the values `values`, (n,).
-    quantities: the arm's quantities by name, () or (n,) each."""
+    quantities: the arm's quantities by name, () or (n,) each. is_force: whether the arm's load is a force."""
     si = si_unit_of(variable, is_force)
     converted = real_variable(si_name_of(variable.name, si.unit), si.unit, _si_long_name(variable, si.unit))
     return converted, values * si.scale(quantities)
@@ -174,24 +176,29 @@ def arm_variables(parameters: ParametersSection, points: Points) -> tuple[Filled
     if arm is None:
         return ()
     if not points.arm_axes:
-        quantities = arm.grid_quantities()
+        quantities = arm.quantity_values_on_grid()
         along = {
             n: (FILE_AXIS_OF_QUANTITY[n],) if np.ndim(quantity_values) else ()
             for n, quantity_values in quantities.items()
         }
-        return tuple(_si_variable(arm, n, values, along[n]) for n, values in quantities.items())
+        return tuple(_si_variable_and_values(arm, n, values, along[n]) for n, values in quantities.items())
     axes = points.arm_axes
     numbers = {name: axis.array()[0] for name, axis in arm.quantity_axes.items() if name not in axes}
     columns = points.arm_units | {n: column for n, column in points.columns_by_name.items() if n not in axes}
     shape = points.shape
     return (
-        *(_si_variable(arm, name, values, (name,)) for name, values in axes.items()),
-        *(_si_variable(arm, name, value, ()) for name, value in numbers.items()),
-        *(_si_variable(arm, n, column.reshape(shape), tuple(axes)) for n, column in columns.items()),
+        *(_si_variable_and_values(arm, name, values, (name,)) for name, values in axes.items()),
+        *(_si_variable_and_values(arm, name, value, ()) for name, value in numbers.items()),
+        *(
+            _si_variable_and_values(arm, n, column.reshape(shape), tuple(axes))
+            for n, column in columns.items()
+        ),
     )
 
 
-def _si_variable(arm: ArmConfig, name: str, values: Any, dimensions: tuple[str, ...]) -> FilledVariable:
+def _si_variable_and_values(
+    arm: ArmConfig, name: str, values: Any, dimensions: tuple[str, ...]
+) -> FilledVariable:
     """(variable, values) of the arm's quantity or parameter `name`, along the given dimensions."""
     units, meaning = (
         UNIT_AND_LONG_NAME_OF_DIMENSION[name] if name in PARAMETERS else ARM_FILE_VARIABLES[name][:2]
@@ -205,7 +212,8 @@ def _si_variable(arm: ArmConfig, name: str, values: Any, dimensions: tuple[str, 
 
 
 def quantities_at_points(quantities: Iterable[FilledVariable], points: Points) -> dict[str, NDArray[Any]]:
-    """Values of an arm's quantities by name; on grids over quantities, (points,), or () for one value."""
+    """Values of an arm's quantities by name. For a grid over quantities: a value for every point, (points,),
+    or () for a quantity that does not vary."""
     if not points.arm_axes:
         return {variable.name: values for variable, values in quantities}
     dimensions = tuple(points.arm_axes)
@@ -227,8 +235,8 @@ def si_values(
     """Values of the SI variables, by name, of one point or of n points.
 
     record: dimensionless variables by name, of one point, or (n, ...). index: flat index of the point, or
-    (n,). quantities: the arm's quantities by name, () or (points,) each.
-    """
+    (n,). quantities: the arm's quantities by name, () or (points,) each. is_force: whether the arm's load is
+    a force."""
     values = {}
     for variable in layout.variables:
         si_unit = _stored_si_unit(variable, is_force)

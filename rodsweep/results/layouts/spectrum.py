@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from ...model.parameters import NON_OPTIONAL_LINEAR_PARAMETER_NAMES, PARAMETERS
-from .rod_properties import estimates_counts, has_linear_law, has_uniform_linear_rods, with_long_name
+from .rod_properties import has_estimated_counts, has_linear_law, has_uniform_linear_rods, with_long_name
 from .thresholds import CROSSING_KINDS
 from .variables import (
     ANGULAR_UNIT,
@@ -84,12 +84,12 @@ EIGENVECTOR_VARIABLES = (
 )
 
 
-def longitudinal_variables(
+def longitudinal_eigenvalue_variables(
     gamma1: float, *dimensions: str, is_closed_form: bool = True
 ) -> tuple[Variable, ...]:
-    """Variables of the longitudinal eigenvalues, with an error estimate unless `is_closed_form`: the
-    eigenvalues then have a closed form. gamma1: axial drag of all rods. dimensions: dimensions of the
-    parameters on which the rates depend, or the dimension of all points."""
+    """Variables of the longitudinal eigenvalues, with an error estimate unless the eigenvalues have a closed
+    form (`is_closed_form`). gamma1: axial drag of all rods. dimensions: dimensions of the parameters on which
+    the eigenvalues depend, or the dimension of all points."""
     meaning = f"longitudinal eigenvalue, real, for gamma1 = {gamma1:g}"
     rate = real_variable("longitudinal_rate", "1/tau2", meaning, *dimensions, "mode")
     error_meaning = "estimate of the relative error of longitudinal_rate"
@@ -100,11 +100,11 @@ def longitudinal_variables(
     )
 
 
-def longitudinal_parameters(is_closed_form: bool, linear: bool) -> tuple[str, ...]:
+def longitudinal_parameter_names(is_closed_form: bool, linear: bool) -> tuple[str, ...]:
     """Names of the parameters, besides gamma1, on which the longitudinal eigenvalues depend.
 
     is_closed_form: whether every arm is uniform and of linear material. linear: whether the material is
-    linear, so that the rates do not depend on F.
+    linear, so that the eigenvalues do not depend on F.
     """
     if is_closed_form:
         return ("k1",)
@@ -138,8 +138,8 @@ FORCE_THRESHOLD_VARIABLES = (
         FORCE_THRESHOLD_DIMENSION,
     ),
 )
-"""Variables of the forces at which the straight rod starts to oscillate, becomes unstable or stable again,
-which are computed after the last point."""
+"""Variables, computed after the last point, of the forces at which the straight rod starts to oscillate,
+becomes unstable, or becomes stable again."""
 OPTIONS_THAT_NEED_NEW_SOLVE = ("modes", "certify", "vectors", "nodes", "follow")
 REUSE_RULES_OF_INCREASED_OPTIONS = dict.fromkeys(OPTIONS_THAT_NEED_NEW_SOLVE, NEW_SOLVE_RULE) | {
     "longitudinal": NO_NEW_SOLVE_RULE
@@ -147,15 +147,16 @@ REUSE_RULES_OF_INCREASED_OPTIONS = dict.fromkeys(OPTIONS_THAT_NEED_NEW_SOLVE, NE
 
 
 def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables of a file of the task spectrum that belong to all points together."""
+    """Variables of a file of the task spectrum that belong to all points together, for a resolved config.
+    is_grid: whether the points are a grid."""
     gamma1 = config["parameters"].get("gamma1")
     if gamma1 is None:
         return FORCE_THRESHOLD_VARIABLES
     is_closed_form = has_uniform_linear_rods(config)
-    names = longitudinal_parameters(is_closed_form, has_linear_law(config))
+    names = longitudinal_parameter_names(is_closed_form, has_linear_law(config))
     dimensions = [name for name in names if name in config["parameters"]] if is_grid else ["point"]
     return (
-        *longitudinal_variables(float(gamma1), *dimensions, is_closed_form=is_closed_form),
+        *longitudinal_eigenvalue_variables(float(gamma1), *dimensions, is_closed_form=is_closed_form),
         *FORCE_THRESHOLD_VARIABLES,
     )
 
@@ -166,7 +167,7 @@ def layout(config: dict[str, Any]) -> Layout:
     options = config["spectrum"]
     each_point: tuple[Variable, ...] = FOLLOWED_POINT_VARIABLES
     extents = {"mode": options["modes"]}
-    if estimates_counts(config):
+    if has_estimated_counts(config):
         each_point = with_long_name(each_point, CERTIFIED_VARIABLE.name, CERTIFIED_LONG_NAME_OF_ESTIMATES)
     if not options["vectors"]:
         return Layout(MODE_VARIABLES + each_point, extents)

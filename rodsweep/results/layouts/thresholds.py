@@ -10,8 +10,8 @@ from .variables import (
     NEW_SOLVE_RULE,
     SECONDS_VARIABLE,
     STATUS_VARIABLE,
-    ExtensionRule,
     Layout,
+    ReuseRule,
     Variable,
     boolean_variable,
     integer_variable,
@@ -99,10 +99,10 @@ def search_variables(line_parameter: str, position_name: str) -> tuple[Variable,
     )
 
 
-CROSSING_LIST_EXTENSION_RULE = ExtensionRule(lambda records, before: records["crossing_count"] <= before)
+CROSSING_LIST_REUSE_RULE = ReuseRule(lambda records, before: records["crossing_count"] <= before)
 """Rule for the maximum number of stored crossings; a stored list that is not full already has all
 crossings."""
-REUSE_RULES_OF_INCREASED_OPTIONS = {"crossings": CROSSING_LIST_EXTENSION_RULE, "certify": NEW_SOLVE_RULE}
+REUSE_RULES_OF_INCREASED_OPTIONS = {"crossings": CROSSING_LIST_REUSE_RULE, "certify": NEW_SOLVE_RULE}
 
 
 def layout(config: dict[str, Any]) -> Layout:

@@ -95,7 +95,7 @@ def word_variable(
 
 
 def stored_number_of_word(word: str, words: Iterable[tuple[int, str]]) -> int:
-    """Stored number of `word_variable`, from the (stored number, word) pairs `words`."""
+    """Number that stands for `word` in a `word_variable`. words: pairs (stored number, word)."""
     return next(number for number, known_word in words if known_word == word)
 
 
@@ -111,7 +111,8 @@ def along_dimension(dimension: str, *variables: Variable) -> tuple[Variable, ...
 
 def curve_end_variables(curve: str, reasons: Iterable[str]) -> tuple[Variable, Variable]:
     """Variables with the reasons why curves begin and end, without the dimension of the points of the curves.
-    curve: prefix of the names."""
+    curve: prefix of the variables' names. reasons: names of all reasons; the file stores the position in this
+    list."""
     reasons = tuple(reasons)
     return (
         word_variable(f"{curve}_start", "why the curve begins at the point", reasons),
@@ -168,7 +169,7 @@ def value_lists(
 
 
 @dataclass(frozen=True, slots=True)
-class ExtensionRule:
+class ReuseRule:
     """Rule for an option of which a larger value only requests more data of every point of a file.
 
     The rule determines which stored points need no new solve when the option increases.
@@ -187,9 +188,9 @@ class ExtensionRule:
         return bool(new > old)
 
 
-NEW_SOLVE_RULE = ExtensionRule(lambda records, before: np.zeros(len(records), bool))
+NEW_SOLVE_RULE = ReuseRule(lambda records, before: np.zeros(len(records), bool))
 """Rule for an option whose increase needs a new solve of every point."""
-NO_NEW_SOLVE_RULE = ExtensionRule(lambda records, before: np.ones(len(records), bool))
+NO_NEW_SOLVE_RULE = ReuseRule(lambda records, before: np.ones(len(records), bool))
 """Rule for an option whose increase needs no new solve, because the additional data belong to all points
 together."""
 FilledVariable = tuple[Variable, NDArray[Any]]

@@ -30,7 +30,7 @@ STATE_PREFIX = "state_"
 """Prefix of the names of a solver state's arrays in a checkpoint file."""
 
 
-class StateWithArrays(Protocol):
+class ArrayConvertibleState(Protocol):
     """Solver state after a point of a chain of points, which can be written as arrays."""
 
     def arrays(self) -> ArraysByName:
@@ -44,7 +44,8 @@ class ArrayStore:
     file_name_pattern: ClassVar[str]
 
     def __init__(self, directory: Path, fingerprint: str, first_line: bytes):
-        """directory: journal directory. fingerprint: digest of config and points."""
+        """directory: journal directory. fingerprint: digest of config and points. first_line: first line of
+        the files, which states kind and version."""
         self.directory = directory
         self.header = first_line + fingerprint.encode() + b"\n"
 
@@ -79,27 +80,27 @@ class ArrayStore:
 
 
 class Checkpoints(ArrayStore):
-    """Store with the last solved point of each unfinished chain of points, and the solver state after this
+    """Store of the last solved point of each unfinished chain of points, and of the solver state after this
     point."""
 
     file_name_pattern = CHECKPOINT_GLOB
 
     def __init__(
-        self, directory: Path, fingerprint: str, state_of: Callable[[ArraysByName], StateWithArrays]
+        self, directory: Path, fingerprint: str, state_of: Callable[[ArraysByName], ArrayConvertibleState]
     ):
         """directory: journal directory. state_of: makes a solver state from its arrays (the result of the
         state's method `arrays`)."""
         super().__init__(directory, fingerprint, CHECKPOINT_HEAD)
         self._state_of = state_of
 
-    def write(self, chain: int, index: int, state: StateWithArrays | None) -> None:
+    def write(self, chain: int, index: int, state: ArrayConvertibleState | None) -> None:
         """Stores the solver state after the point at the flat index `index` of a chain; None for no state."""
         arrays = state.arrays() if state is not None else {}
         self.put(
             chain, {"index": np.array(index)} | {STATE_PREFIX + name: array for name, array in arrays.items()}
         )
 
-    def read(self, chain: int) -> tuple[int, StateWithArrays | None] | None:
+    def read(self, chain: int) -> tuple[int, ArrayConvertibleState | None] | None:
         """(flat index, solver state) of a chain's last checkpoint; None if there is no intact checkpoint."""
         arrays = self.get(chain)
         if arrays is None:

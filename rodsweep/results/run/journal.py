@@ -26,7 +26,7 @@ TEXT_CONTINUES, TEXT_ENDS = -2, -1
 of the line TEXT_CONTINUES."""
 CHECKSUM_BYTES = 4
 """Length of the checksum after a record, in bytes."""
-INDEX_BYTES = 8
+POINT_INDEX_BYTES = 8
 """Length of the index, the first field of a record, in bytes."""
 MAX_HEAD_BYTES = 200
 """Maximum length of each of the first two lines of a journal, in bytes."""
@@ -55,7 +55,7 @@ class Journal:
     def append(self, index: int, values: dict, reasons: Sequence[str] = ()) -> None:
         """Writes the record of the finished point at a flat index; values: every variable by name.
 
-        reasons: lines that say why points failed, for `read_reasons`.
+        reasons: lines that say why points failed, for `read_failure_reasons`.
         """
         # One assignment, because assigning single fields takes three times as long.
         self.record[()] = (index, *(values[name] for name in self.variable_names))
@@ -66,7 +66,7 @@ class Journal:
         self, index: np.ndarray, values: dict[str, np.ndarray], reasons: Sequence[str] = ()
     ) -> None:
         """Writes the records of finished points: flat indices `index`, (n,), and `values` of all variables by
-        name, (n, ...)."""
+        name, (n, ...). reasons: as for `append`."""
         records: np.ndarray = np.zeros(len(index), self.record.dtype)
         records["index"] = index
         for name in self.variable_names:
@@ -78,14 +78,15 @@ class Journal:
 
     def _text_records(self, lines: Sequence[str]) -> Iterator[bytes]:
         """Yields records that hold lines of text instead of the values of a point."""
-        chunk_bytes = self.record.itemsize - INDEX_BYTES
+        chunk_bytes = self.record.itemsize - POINT_INDEX_BYTES
         for line in lines:
             # Text has the length of other records, so that readers need no table of positions.
             text = line.encode()
             chunks = [text[offset : offset + chunk_bytes] for offset in range(0, len(text), chunk_bytes)]
             for number, chunk in enumerate(chunks, 1):
                 index = TEXT_ENDS if number == len(chunks) else TEXT_CONTINUES
-                yield index.to_bytes(INDEX_BYTES, "little", signed=True) + chunk.ljust(chunk_bytes, b"\0")
+                index_bytes = index.to_bytes(POINT_INDEX_BYTES, "little", signed=True)
+                yield index_bytes + chunk.ljust(chunk_bytes, b"\0")
 
     def close(self) -> None:
         """Syncs the journal to disk and closes the file; deletes the file if the journal has no points.
@@ -203,7 +204,7 @@ def read_journals(
             yield records[(records["index"] >= 0) & (records["index"] < point_count)]
 
 
-def read_reasons(directory: Path, layout: Layout, fingerprint: str) -> list[str]:
+def read_failure_reasons(directory: Path, layout: Layout, fingerprint: str) -> list[str]:
     """Lines with the reasons why points failed, from all journals with this fingerprint in a directory."""
     return [
         line
@@ -213,16 +214,16 @@ def read_reasons(directory: Path, layout: Layout, fingerprint: str) -> list[str]
 
 
 def _complete_text_lines(blocks: Iterable[np.ndarray]) -> bytes:
-    """The complete lines of text stored in a journal; a line with a damaged record is left out. blocks:
-    records with their checksums, as rows of bytes, (records, bytes)."""
+    """The lines of text stored in a journal; a damaged record, and the text before it in the same line, are
+    left out. blocks: records with their checksums, as rows of bytes, (records, bytes)."""
     lines = []
     line = b""
     for rows in blocks:
-        index = np.ascontiguousarray(rows[:, :INDEX_BYTES]).view("<i8").ravel()
+        index = np.ascontiguousarray(rows[:, :POINT_INDEX_BYTES]).view("<i8").ravel()
         is_text = (index == TEXT_CONTINUES) | (index == TEXT_ENDS)
         texts = rows[is_text]
         for row, number, is_valid in zip(texts, index[is_text], _has_valid_checksum(texts), strict=True):
-            line = line + row[INDEX_BYTES:-CHECKSUM_BYTES].tobytes().rstrip(b"\0") if is_valid else b""
+            line = line + row[POINT_INDEX_BYTES:-CHECKSUM_BYTES].tobytes().rstrip(b"\0") if is_valid else b""
             if number == TEXT_ENDS:
                 lines.append(line)
                 line = b""

@@ -20,7 +20,7 @@ SYSTEM_LIBRARY_FOLDER = Path("/usr/lib")
 def add_debian_modules(libraries: Path = SYSTEM_LIBRARY_FOLDER) -> None:
     """Appends to `sys.path` the directories of Debian's newest petsc4py and slepc4py built for real numbers.
     Nothing is appended for a module that Python already finds, or whose environment variable, PETSC_DIR or
-    SLEPC_DIR, is set."""
+    SLEPC_DIR, is set. libraries: folder that contains the directories of the builds."""
     for name in ("petsc", "slepc"):
         if f"{name.upper()}_DIR" in os.environ or is_module_found(f"{name}4py"):
             continue

@@ -35,7 +35,7 @@ SMALL_EIGENVALUE_SETTINGS = SmallEigenvalueSettings()
 
 @compiled
 def small_matrix_eigenvalues(A: Array) -> Complex:
-    """Eigenvalues, (n,), of a matrix A, (n, n), finite entries; all nan if LAPACK does not converge."""
+    """Eigenvalues, (n,), of a matrix A, (n, n), with finite entries; all nan if LAPACK does not converge."""
     n = len(A)
     a = A.copy()
     parts = np.empty((2, n))

@@ -20,7 +20,7 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import ConvergedOrbit, error_of_largest_multiplier, relative_change
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh
-from .bordered.condition import BorderCondition, moved_orbit
+from .bordered.border_condition import BorderCondition, moved_orbit
 from .bordered.corrected_linearisation import CorrectedLinearisation, linearisation_of
 from .bordered.matrix import BorderedMatrix
 from .bordered.scale import ArcLengthScale
@@ -35,7 +35,7 @@ ARC_STEP_CONTROL = StepControl(
     max_prediction_error=0.1,
     prediction_order=4,
     max_angle=0.45,
-    max_length_ratio=2.0,
+    max_successive_length_ratio=2.0,
 )
 """Control of the arc-length steps along a branch. Arc length is dimensionless (`ArcLengthScale`): on a step
 of 0.1 the deflection, the period and the parameter each change by at most about a tenth."""
@@ -62,10 +62,10 @@ class BranchCycle:
     next_mesh: OrbitMesh | None = None
     """The mesh of the next cycle; None for the mesh of this cycle."""
     previous: PreviousCycle | None = None
-    """The previous cycle of the branch, with the cycle before; None for the first cycle."""
+    """The previous cycle of the branch, which also holds the cycle before it; None for the first cycle."""
     prediction_error: float = 0.0
-    """Relative distance of this cycle from its prediction by the previous cycle; 0 if the meshes differ, and
-    with them the cycles."""
+    """Relative distance of this cycle from its prediction by the previous cycle; 0 if the meshes of the two
+    cycles differ, because the distance would contain the difference between the meshes."""
 
     @property
     def scale(self) -> ArcLengthScale:
@@ -127,7 +127,8 @@ class BranchCycle:
         return moved_orbit(self.orbit, self.scale.parameter_name, change)
 
     def predicted_on_next_mesh(self, length: float, max_earlier_cycles: int = 2) -> Orbit:
-        """The orbit of `predicted_orbit` on the mesh of the next cycle; raises Unsolvable."""
+        """The orbit of `predicted_orbit`, with equal arguments, on the mesh of the next cycle; raises
+        Unsolvable."""
         predicted = self.predicted_orbit(length, max_earlier_cycles)
         return self.next_mesh.interpolated_orbit(predicted) if self.next_mesh else predicted
 
@@ -147,15 +148,16 @@ def next_cycle(start: BranchCycle, accuracy: float) -> BranchCycle:
 
 def cycle_at_length(start: BranchCycle, length: float, accuracy: float) -> BranchCycle:
     """The cycle at the arc length `length` from `start`, to a relative accuracy; raises Unsolvable if no
-    cycle is found, or if the prediction error or the angle is so large that the cycle may lie on another
-    branch."""
-    return ARC_STEP_CONTROL.require_small_errors(_step_of_length(start, accuracy, length)).solution
+    cycle is found, or if the prediction error or the angle between the tangents is so large that the cycle
+    may lie on another branch."""
+    return ARC_STEP_CONTROL.require_same_curve(_step_of_length(start, accuracy, length)).solution
 
 
 def _step_of_length(start: BranchCycle, accuracy: float, length: float) -> StepResult[BranchCycle]:
     """The cycle at the arc length `length` from `start`, to a relative accuracy, with the prediction error
     and the cosine of the angle between the tangents; raises Unsolvable. On the first step of a branch, and on
-    the first step on another mesh, an allowed prediction error is replaced by `target_prediction_error`."""
+    the first step on another mesh, `target_prediction_error` replaces a prediction error of at most
+    `max_prediction_error`."""
     condition = start.arc_length_condition(length)
     predicted = start.predicted_on_next_mesh(length)
     # Steps are chosen by the error of the cubic, which is larger and varies less than that of the quintic.

@@ -18,13 +18,17 @@ from .computing_time import fraction_done
 from .mirror_image_end import accurate_end_before_hopf, end_or_shorter_step_at_mirror_image
 from .range_end import (
     cycle_at_range_end_beside_zero,
-    cycle_within_range,
+    cycle_within_range_and_end_index,
     index_of_passed_range_end,
     range_end_condition,
 )
 from .range_end_near_hopf import end_before_first_cycle
 from .settings import BRANCH_END_SETTINGS
-from .special.detection import fold_and_breaking_between, lie_on_one_branch, special_points_between
+from .special.detection import (
+    fold_and_breaking_kinds_between,
+    lie_on_one_branch,
+    special_points_and_completeness,
+)
 from .special.locating import special_point_between
 from .special.special_point import SpecialPoint, SpecialPointKind
 from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS, first_asymmetric_cycle
@@ -71,13 +75,13 @@ def _follow_to_end(
     """The branch `curve`, which has only its first special point, followed to its end. solve_first_cycle:
     function that solves the first cycle and returns it with the limits of the branch."""
     if limits.max_cycles < 1:
-        end = _end_without_cycle(curve, BranchEndReason.list_full)
+        end = _end_before_first_cycle(curve, BranchEndReason.list_full)
         curve.append_end(BranchEnd(end, is_complete=False, reached_max_cycles=True))
         return curve
     try:
         start, limits = solve_first_cycle()
     except Unsolvable as reason:
-        end = _end_without_cycle(curve, reason_of_failure(reason), str(reason))
+        end = _end_before_first_cycle(curve, reason_of_failure(reason), str(reason))
         curve.append_end(BranchEnd(end, is_complete=False))
         return curve
     passed_end = index_of_passed_range_end(start, limits.coordinate_range)
@@ -116,23 +120,19 @@ def follow_from_range_end(entry: RangeEndPassage, limits: BranchLimits) -> Branc
 
 
 def _branch_progress(curve: BranchCurve, start: BranchCycle, limits: BranchLimits) -> SolvePosition:
-    """Progress along a branch: text with the parameter at the last cycle `start`, and fraction of work."""
+    """Progress of a branch: text with the parameter at the last cycle `start`, and fraction of time."""
     name = start.scale.parameter_name
     # The end of the range towards which the parameter currently moves.
     end_coordinate = limits.coordinate_range[1 if start.unit_tangent[-1] > 0 else 0]
     value = PARAMETERS[name].value(start.parameter_coordinate)
     end_value = PARAMETERS[name].value(end_coordinate)
-    text = f"{name} = {value:.5g} on the way to {end_value:.5g}, {counted(len(curve.points), 'cycle')}"
-    start_value = (
-        curve.special_points[0].parameter_value if curve.special_points else curve.points[0].parameter_value
-    )
-    return SolvePosition(
-        text,
-        fraction_done(PARAMETERS[name].coordinate(start_value), start.parameter_coordinate, end_coordinate),
-    )
+    text = f"{name} = {value:.5g} on the way to {end_value:.5g}, {counted(len(curve.stored_cycles), 'cycle')}"
+    first_point = (curve.special_points or curve.stored_cycles)[0]
+    first_coordinate = PARAMETERS[name].coordinate(first_point.parameter_value)
+    return SolvePosition(text, fraction_done(first_coordinate, start.parameter_coordinate, end_coordinate))
 
 
-def _end_without_cycle(curve: BranchCurve, reason: BranchEndReason, message: str = "") -> SpecialPoint:
+def _end_before_first_cycle(curve: BranchCurve, reason: BranchEndReason, message: str = "") -> SpecialPoint:
     """The end of a branch without cycles, at its first special point. message: cause of a failure."""
     special_point = curve.special_points[0]
     return replace(
@@ -149,10 +149,11 @@ def _append_next_cycle(
     record: BranchRecord, start: BranchCycle, limits: BranchLimits
 ) -> BranchCycle | BranchEnd:
     """Appends the next cycle after `start`, and the special points before this cycle, to the branch. Returns
-    the last cycle, from which the branch continues, or the end of the branch; if a step to the mirror image
-    is too long, `start` with half the step length, without a new cycle."""
+    the last cycle, from which the branch continues, or the end of the branch. If the step is too long and
+    leads to the mirror image or to another branch, no cycle is appended, and `start` is returned with a
+    shorter next step."""
     curve = record.curve
-    if len(curve.points) >= limits.max_cycles:
+    if len(curve.stored_cycles) >= limits.max_cycles:
         return BranchEnd(
             branch_end_point(start, BranchEndReason.list_full), is_complete=False, reached_max_cycles=True
         )
@@ -162,14 +163,16 @@ def _append_next_cycle(
         next_length = end.next_step_length
         if (replacement := _end_or_shorter_step(start, end, limits)) is not None:
             return replacement
-        end, passed_end = cycle_within_range(start, end, limits.coordinate_range, limits.accuracy)
+        end, passed_end = cycle_within_range_and_end_index(
+            start, end, limits.coordinate_range, limits.accuracy
+        )
         range_end = (
             range_end_condition(start, limits.coordinate_range[passed_end]) if passed_end >= 0 else None
         )
         if range_end is not None and _step_has_unresolved_amplitude_corner(start, end):
             range_end = None  # first a cycle at half the step
             end = cycle_at_length(start, arc_length_between(start, end) / 2, limits.accuracy)
-        if (last_cycle := _add_special_points(curve, start, end, limits)) is not None:
+        if (last_cycle := _add_special_points_and_find_end(curve, start, end, limits)) is not None:
             return last_cycle
         record.append(end)
         is_measured = range_end is not None or is_error_measurement_due(end, limits.accuracy)
@@ -187,9 +190,10 @@ def _append_next_cycle(
 def _end_or_shorter_step(
     start: BranchCycle, end: BranchCycle, limits: BranchLimits
 ) -> BranchCycle | BranchEnd | None:
-    """The end of the branch at its mirror image or before it, or `start` with a shorter step, if the step to
-    `end` leads to the mirror image or to another branch; None if the branch continues through `end`. Raises
-    Unsolvable if no shorter step is allowed."""
+    """The end of the branch, if it reaches its mirror image before `end`, or an end of the range just before
+    its mirror image; or `start` with a shorter step, if the step to `end` is too long to locate this end or
+    leads to another branch; None if the branch continues through `end`. Raises Unsolvable if no shorter step
+    is allowed."""
     # Beyond its end the branch continues through the mirror images of its cycles.
     if (replacement := end_or_shorter_step_at_mirror_image(start, end, limits)) is not None:
         return replacement
@@ -211,21 +215,20 @@ def range_end_point(point: BranchCycle, reason: BranchEndReason) -> SpecialPoint
     )
 
 
-def _add_special_points(
+def _add_special_points_and_find_end(
     curve: BranchCurve, start: BranchCycle, end: BranchCycle, limits: BranchLimits
 ) -> BranchEnd | None:
-    """Appends the special points between the last cycle `start` and the next cycle `end` to a branch.
-    Returns the end of the branch if it ends between the two cycles, at h1 = 0 or because it is closed; else
-    None."""
+    """Appends the special points between the last cycle `start` and the next cycle `end` to a branch. Returns
+    the end of the branch if it ends between the two cycles, at h1 = 0 or because it is closed; else None."""
     # h1 = 0: the model is not valid beyond, even if the discrete equations have solutions.
     if end.cycle.measures.least_stretch <= 0:
         special = special_point_between(SpecialPointKind.left_the_model, start, end, limits.accuracy)
         return BranchEnd(special, is_complete=True)
     if limits.locates_special_points:
         cycle_at = partial(cycle_at_length, accuracy=limits.accuracy)
-        special_points, are_complete = special_points_between(start, end, cycle_at, limits.accuracy)
+        special_points, are_complete = special_points_and_completeness(start, end, cycle_at, limits.accuracy)
     else:
-        kinds = fold_and_breaking_between(start, end)
+        kinds = fold_and_breaking_kinds_between(start, end)
         special_points = [special_point_between(kind, start, end, limits.accuracy) for kind in kinds]
         are_complete = True
     closing_index = curve.index_of_first_special_point(special_points)
@@ -237,9 +240,9 @@ def _add_special_points(
 
 
 def _step_has_unresolved_amplitude_corner(start: BranchCycle, end: BranchCycle) -> bool:
-    """Whether the largest tip y has a corner on the last step (a different maximum of y(t) becomes the
-    largest), and the step is too long for a figure, which locates a corner from two cycles before and two
-    cycles after the corner."""
+    """Whether the largest tip y has a corner on the last step, from `start` to `end` (a different maximum of
+    y(t) becomes the largest), and the step is too long for a figure, which locates a corner from two cycles
+    before and two cycles after the corner."""
     time_difference = abs(end.cycle.motion.time_of_largest_y - start.cycle.motion.time_of_largest_y)
     is_other_peak = min(time_difference, 1 - time_difference) > BRANCH_END_SETTINGS.max_peak_shift_in_periods
     return (

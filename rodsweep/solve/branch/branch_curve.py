@@ -59,16 +59,16 @@ class StoredBranchCycle:
 
 
 def unstable_count_bounds(point: BranchCycle) -> tuple[int, int]:
-    """Smallest and largest possible number of nontrivial multipliers outside the unit circle, within their
-    errors."""
+    """Smallest and largest possible number of nontrivial multipliers of the cycle `point` outside the unit
+    circle, within their errors."""
     modulus_excess = np.abs(point.cycle.multipliers) - 1
     error = _multiplier_modulus_error(point)
     return int((modulus_excess > error).sum()), int((modulus_excess >= -error).sum())
 
 
 def _multiplier_modulus_error(point: BranchCycle) -> float:
-    """Error of the modulus of a multiplier near the unit circle: relative error of the largest multiplier,
-    plus a multiple of the error of the trivial multiplier, whose exact value is 1."""
+    """Error of the modulus of a multiplier of the cycle `point` near the unit circle: relative error of the
+    largest multiplier, plus a multiple of the error of the trivial multiplier, whose exact value is 1."""
     cycle = point.cycle
     relative_error = cycle.errors.multiplier_error / max(cycle.largest_multiplier_modulus, 1.0)
     # The trivial multiplier is exactly 1: its distance from 1 shows the effect of the mesh.
@@ -88,16 +88,16 @@ class RangeEndPassage:
     range_end_index: int
     accuracy: float
     hopf_beyond_range_end: HopfBranchStart | None = None
-    """Hopf point just beyond the end of the range where the branch ends, or None. `cycle` is then the cycle
-    of the branch nearest to the end of the range, within the range."""
+    """Hopf point just beyond the end of the range where the branch ends, or None. With such a Hopf point,
+    `cycle` is the cycle of the branch within the range that is nearest to its end."""
     normal_form_end_point: SpecialPoint | None = None
     """The cycle at the end of the range by the normal form of `hopf_beyond_range_end`; None without
     `hopf_beyond_range_end`."""
 
     def is_same_as(self, other: "RangeEndPassage") -> bool:
-        """Whether a branch passes the end of the range at the same cycle, or its mirror image, as another
-        branch, in either direction: the end of the range, the period and the largest |y| of the tip agree
-        within their errors."""
+        """Whether this passage and the passage `other`, of another branch, are at the same cycle or its
+        mirror image, in either direction: the end of the range, the period and the largest |y| of the tip
+        agree within their errors."""
         if self.range_end_index != other.range_end_index:
             return False
         # Small cycles near a Hopf point have uncertain heights, whereas the Hopf point is known.
@@ -113,8 +113,8 @@ class RangeEndPassage:
         ) <= factor * (height_error + other_height_error)
 
     def has_same_cycle_as(self, other: "RangeEndPassage") -> bool:
-        """Whether both places have the same cycle, with the same number of multipliers outside the unit
-        circle: this number differs between the two cycles beside a fold, however near they are."""
+        """Whether this place and `other` have the same cycle, with the same number of multipliers outside the
+        unit circle: the number differs between the two cycles beside a fold, however near they are."""
         counts = [unstable_count_bounds(passage.cycle) for passage in (self, other)]
         is_certain = all(least == largest for least, largest in counts)
         return is_certain and counts[0] == counts[1] and self.is_same_as(other)
@@ -153,7 +153,7 @@ class BranchCurve:
 
     start_hopf_index: int
     """Index in `BranchLimits.hopfs` of the Hopf point where the branch starts, -1 if it starts elsewhere."""
-    points: list[StoredBranchCycle] = field(default_factory=list)
+    stored_cycles: list[StoredBranchCycle] = field(default_factory=list)
     special_points: list[SpecialPoint] = field(default_factory=list)
     """Special points in order along the branch; once the branch has ended, the last one is the end of the
     branch."""
@@ -181,7 +181,7 @@ class BranchCurve:
     def add_special_point(self, special: SpecialPoint) -> None:
         """Appends a special point that lies beyond the current last cycle, and sets its
         `index_of_cycle_before`."""
-        self.special_points.append(replace(special, index_of_cycle_before=len(self.points) - 1))
+        self.special_points.append(replace(special, index_of_cycle_before=len(self.stored_cycles) - 1))
 
     def add_special_points(self, special_points: Sequence[SpecialPoint], are_complete: bool) -> None:
         """Appends the special points `special_points`, which lie between the current last cycle and the next
@@ -193,9 +193,9 @@ class BranchCurve:
 
     def remove_last_cycles(self, count: int) -> None:
         """Removes the last `count` cycles, and all special points beyond the first removed cycle."""
-        del self.points[-count:]
+        del self.stored_cycles[-count:]
         self.special_points[:] = [
-            point for point in self.special_points if point.index_of_cycle_before < len(self.points)
+            point for point in self.special_points if point.index_of_cycle_before < len(self.stored_cycles)
         ]
 
     def append_end(self, end: BranchEnd) -> None:
@@ -220,9 +220,9 @@ class BranchCurve:
         )
 
     def joined_with_forward_branch(self, forward: "BranchCurve") -> "BranchCurve":
-        """The branch of this branch, reversed, and the branch `forward`; both start at the same cycle, in
-        opposite directions."""
-        cycle_count = len(self.points)
+        """This branch, reversed, continued by the branch `forward`; both start at the same cycle, in opposite
+        directions."""
+        cycle_count = len(self.stored_cycles)
         backward_points = [
             # Reversed, the cycle before a point is the cycle that was behind it.
             replace(point, index_of_cycle_before=cycle_count - 2 - point.index_of_cycle_before)
@@ -237,7 +237,7 @@ class BranchCurve:
             start_hopf_index=self.end_hopf_index,
             start_breaking=self.end_breaking,
             # The first cycle, common to both directions, is taken from `forward`.
-            points=[*self.points[:0:-1], *forward.points],
+            stored_cycles=[*self.stored_cycles[:0:-1], *forward.stored_cycles],
             special_points=[*backward_points, *forward_points],
             end_hopf_index=forward.end_hopf_index,
             end_breaking=forward.end_breaking,

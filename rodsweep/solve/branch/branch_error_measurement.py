@@ -8,8 +8,8 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...determinant.exponents import EXPONENT_SETTINGS
 from ..cycle.accuracy.calibration import MeshErrorCalibration, mesh_error_calibration
-from ..cycle.accuracy.cycle_errors import MULTIPLIER_ERROR_INDEX
-from ..cycle.accuracy.finer_meshes import FINER_MESH_SETTINGS, finer_meshes_and_removed_fraction
+from ..cycle.accuracy.cycle_errors import LARGEST_MULTIPLIER_ERROR_INDEX
+from ..cycle.accuracy.finer_meshes import FINER_MESH_SETTINGS, finer_meshes_and_removed_time_error
 from ..cycle.cycles_along_parameter import interpolated_change
 from ..orbit.measures import CycleMotion
 from ..orbit.newton import ConvergedOrbit, error_of_largest_multiplier, nontrivial_multipliers_and_error
@@ -17,10 +17,10 @@ from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of_orbit
 from ..orbit.tip_path_differences import tip_path_differences
 from ..unsolvable import Unsolvable
-from .bordered.condition import BorderCondition, moved_orbit
+from .bordered.border_condition import BorderCondition, moved_orbit
 from .bordered.scale import PARAMETER_DIRECTION
 from .branch_errors import BranchDerivatives, BranchErrorCalibration, branch_newton_tolerance
-from .multiplier_sensitivity import MultiplierSensitivity
+from .multiplier_sensitivity import MultiplierErrorAmplification
 from .settings import BRANCH_ERROR_SETTINGS
 
 
@@ -32,16 +32,16 @@ def measured_branch_error_calibration(
 ) -> BranchErrorCalibration:
     """Errors of the mesh of the cycle `solved`, measured by comparison with two finer meshes; raises
     Unsolvable. derivatives: derivatives of the branch at `solved`. accuracy: relative accuracy of `solved`.
-    previous_calibration: calibration at a previous cycle, for the convergence rates; None if there is no such
-    cycle."""
+    previous_calibration: calibration at a previous cycle, for the convergence rates; None if there is no
+    previous cycle."""
     mesh = mesh_of_orbit(solved.orbit)
     orbit = solved.orbit
-    target_meshes, fraction = finer_meshes_and_removed_fraction(mesh)
+    target_meshes, fraction = finer_meshes_and_removed_time_error(mesh)
     border = _border_of_comparison(orbit, derivatives)
     condition = BorderCondition.at_arc_length(derivatives.scale, border, orbit)
     rough = CycleMotion(orbit)
     multipliers = nontrivial_multipliers_and_error(solved)[0]
-    differences = np.empty((2, MULTIPLIER_ERROR_INDEX + 2))
+    differences = np.empty((2, LARGEST_MULTIPLIER_ERROR_INDEX + 2))
     for difference, target in zip(differences, target_meshes, strict=True):
         fine_orbit = condition.solve_on_mesh(
             target,
@@ -50,14 +50,14 @@ def measured_branch_error_calibration(
             FINER_MESH_SETTINGS.max_distance_from_matrix_orbit,
         )
         difference[:] = _differences_between_meshes(rough, multipliers, fine_orbit, derivatives)
-    sensitivity = MultiplierSensitivity.of_cycle(solved)
+    sensitivity = MultiplierErrorAmplification.of_cycle(solved)
     multiplier_errors = [
-        sensitivity.error_from_mesh_difference(float(difference[MULTIPLIER_ERROR_INDEX]), removed)
+        sensitivity.error_from_mesh_difference(float(difference[LARGEST_MULTIPLIER_ERROR_INDEX]), removed)
         for difference, removed in zip(differences, (1.0, fraction), strict=True)
     ]
     # The mesh that is finer in time removes only a fraction of the error in time.
     differences[1] /= fraction
-    differences[:, MULTIPLIER_ERROR_INDEX] = multiplier_errors
+    differences[:, LARGEST_MULTIPLIER_ERROR_INDEX] = multiplier_errors
     calibration = mesh_error_calibration(mesh, differences[:, :-1].copy(), orbit, previous_calibration)
     return BranchErrorCalibration(
         calibration,
@@ -68,7 +68,7 @@ def measured_branch_error_calibration(
 
 
 def _border_of_comparison(orbit: Orbit, derivatives: BranchDerivatives) -> Array:
-    """Border, (3,), of the condition under which the cycle is solved on a finer mesh, in components
+    """Border, (3,), of the condition under which the cycle `orbit` is solved on a finer mesh, in components
     (deflection, log period, parameter): the unit tangent of the branch, so that the arc length is equal.
     Close to the parameter coordinate 0, the direction of the parameter: at an equal arc length the finer mesh
     might have a negative coordinate, which no rod has."""
@@ -117,7 +117,9 @@ def _differences_between_meshes(
 def parameter_sensitivities(motion: CycleMotion, derivatives: BranchDerivatives) -> tuple[float, float]:
     """Sensitivities |(p/y) dy/dp| of the largest tip y and |(p/T) dT/dp| of the period T to the parameter p
     along a branch at the cycle `motion`. derivatives: derivatives of the branch at this cycle."""
-    moved_motion = motion_along_tangent(motion.orbit, derivatives.scale.parameter_name, derivatives.tangent)
+    moved_motion = motion_displaced_along_tangent(
+        motion.orbit, derivatives.scale.parameter_name, derivatives.tangent
+    )
     y = motion.tip_extrema["tip_y_max"]
     moved_y = moved_motion.tip_extrema["tip_y_max"]
     parameter_rate = max(abs(derivatives.parameter_per_arc_length), EXPONENT_SETTINGS.min_divisor)
@@ -125,9 +127,10 @@ def parameter_sensitivities(motion: CycleMotion, derivatives: BranchDerivatives)
     return y_rate / parameter_rate, abs(float(derivatives.unit_tangent[1])) / parameter_rate
 
 
-def motion_along_tangent(orbit: Orbit, name: str, tangent: Array) -> CycleMotion:
-    """The motion of the orbit moved over `sensitivity_arc_length` along the tangent of its branch, (N + 1,),
-    or against it if no rod has the parameters ahead; raises Unsolvable. name: name of the parameter."""
+def motion_displaced_along_tangent(orbit: Orbit, name: str, tangent: Array) -> CycleMotion:
+    """The motion of the orbit after a displacement by `sensitivity_arc_length` along the tangent of its
+    branch, (N + 1,), or in the opposite direction if no rod has the parameters ahead; raises Unsolvable.
+    name: name of the parameter."""
     step = BRANCH_ERROR_SETTINGS.sensitivity_arc_length * tangent
     if 0 <= orbit.form.rod.coordinate(name) < -step[-1]:  # no rod has a negative coordinate
         step = -step

@@ -18,13 +18,13 @@ from ...arrays import Array
 from ...determinant.exponents import EXPONENT_SETTINGS
 from ..cycle.accuracy.calibration import ERROR_COUNT, MeshErrorCalibration
 from ..cycle.accuracy.cheapest_mesh import cheapest_mesh
-from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, MULTIPLIER_ERROR_INDEX
+from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, LARGEST_MULTIPLIER_ERROR_INDEX
 from ..cycle.accuracy.newton_tolerances import newton_tolerance
 from ..cycle.accuracy.settings import MESH_ERROR_CALIBRATION_SETTINGS
 from ..orbit.orbit_mesh import OrbitMesh
 from ..orbit.tip_path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
 from .bordered.scale import ArcLengthScale
-from .multiplier_sensitivity import MultiplierSensitivity
+from .multiplier_sensitivity import MultiplierErrorAmplification
 from .settings import BRANCH_ERROR_SETTINGS
 
 
@@ -74,38 +74,41 @@ class BranchDerivatives:
 @dataclass(frozen=True, eq=False)
 class BranchErrorCalibration:
     """Measured errors of a mesh at a cycle of a branch. errors_at_equal_parameter: errors at equal parameter.
-    parameter_errors: relative errors of the parameter at equal deflection, caused by the mesh in space and by
-    the mesh in time, (2,). tip_y_sensitivity, period_sensitivity: |(p/y) dy/dp| and |(p/T) dT/dp|, p:
-    parameter, y: largest tip y, T: period. multiplier_sensitivity: sensitivity of the largest multiplier at
-    this cycle."""
+    parameter_errors_at_equal_deflection: relative errors of the parameter at equal deflection, caused by the
+    mesh in space and by the mesh in time, (2,). relative_tip_y_sensitivity, relative_period_sensitivity:
+    |(p/y) dy/dp| and |(p/T) dT/dp|, p: parameter, y: largest tip y, T: period. multiplier_sensitivity:
+    sensitivity of the largest multiplier at this cycle."""
 
     errors_at_equal_parameter: MeshErrorCalibration
-    parameter_errors: Array
-    tip_y_sensitivity: float
-    period_sensitivity: float
-    multiplier_sensitivity: MultiplierSensitivity
+    parameter_errors_at_equal_deflection: Array
+    relative_tip_y_sensitivity: float
+    relative_period_sensitivity: float
+    multiplier_sensitivity: MultiplierErrorAmplification
 
     @property
     def mesh(self) -> OrbitMesh:
         return self.errors_at_equal_parameter.mesh
 
     def period_error(self, accuracy: float) -> float:
-        """Relative error of the period at equal parameter, at least a fraction of the relative accuracy,
-        without the effect of a steep slope dy/dp if the period is not as steep."""
-        return self._period_errors.estimated_cycle_errors(accuracy).period_error
+        """Relative error of the period at equal parameter, at least a fraction of the relative accuracy. The
+        effect of a steep slope dy/dp of the largest tip y is removed if the slope of the period is less
+        steep."""
+        return self._errors_for_period_estimate.estimated_cycle_errors(accuracy).period_error
 
     def parameter_error(self, accuracy: float) -> float:
         """Relative error of the parameter at equal deflection, with a safety factor, at least a fraction of
         the relative accuracy and at least the rounding error."""
         return max(
-            MESH_ERROR_CALIBRATION_SETTINGS.error_safety_factor * float(self.parameter_errors.sum()),
+            MESH_ERROR_CALIBRATION_SETTINGS.error_safety_factor
+            * float(self.parameter_errors_at_equal_deflection.sum()),
             CYCLE_ERROR_SETTINGS.min_error_over_accuracy * accuracy,
             CYCLE_ERROR_SETTINGS.relative_rounding_error,
         )
 
     def largest_weighted_error(self, accuracy: float) -> float:
         """The number that must not exceed the accuracy: the larger of the parameter error, and the largest
-        weighted error at equal parameter divided by max(1, sensitivity / `max_tip_y_sensitivity`)."""
+        weighted error at equal parameter divided by max(1, `relative_tip_y_sensitivity` /
+        `max_tip_y_sensitivity`)."""
         return self._errors_for_mesh_choice.estimated_cycle_errors(accuracy).largest_weighted_error
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
@@ -113,24 +116,24 @@ class BranchErrorCalibration:
         finer mesh if no such mesh is allowed."""
         return cheapest_mesh(self._errors_for_mesh_choice, accuracy)
 
-    def cheapest_mesh_for_parameter(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh on which the parameter at equal deflection is predicted to have a relative
-        accuracy."""
+    def cheapest_mesh_at_equal_deflection(self, accuracy: float) -> OrbitMesh:
+        """The cheapest mesh on which the parameter at equal deflection is predicted to have the relative
+        accuracy `accuracy`."""
         return cheapest_mesh(self._calibration_with_parameter_errors, accuracy)
 
     @property
     def _allowed_errors_per_accuracy(self) -> float:
         """Ratio, at least 1, of the allowed errors at equal parameter to the accuracy."""
-        # Errors at equal p are proportional to the slope dy/dp; a steep slope is no defect of the mesh.
-        return max(1.0, self.tip_y_sensitivity / BRANCH_ERROR_SETTINGS.max_tip_y_sensitivity)
+        # Errors at equal p are proportional to the slope dy/dp; a steep slope is not a defect of the mesh.
+        return max(1.0, self.relative_tip_y_sensitivity / BRANCH_ERROR_SETTINGS.max_tip_y_sensitivity)
 
     @cached_property
-    def _period_errors(self) -> MeshErrorCalibration:
+    def _errors_for_period_estimate(self) -> MeshErrorCalibration:
         """Errors from which the error of the period is estimated: errors at equal parameter, but the errors
         of largest y and path, which limit the error of the period from below, without the part that a steep
         slope dy/dp causes. Near a Hopf point a mesh displaces this point, and y at equal p changes by a large
         fraction, but the period does not; at a fold both change."""
-        reduction = max(1.0, self._allowed_errors_per_accuracy / max(1.0, self.period_sensitivity))
+        reduction = max(1.0, self._allowed_errors_per_accuracy / max(1.0, self.relative_period_sensitivity))
         errors = self.errors_at_equal_parameter.mesh_errors.copy()
         errors[:, [Y_INDEX, PATH_INDEX]] /= reduction
         return replace(self.errors_at_equal_parameter, mesh_errors=errors)
@@ -140,7 +143,9 @@ class BranchErrorCalibration:
         """Errors from which the mesh is chosen: errors at equal parameter, reduced as in
         `largest_weighted_error`, and the parameter error."""
         errors = self.errors_at_equal_parameter.mesh_errors / self._allowed_errors_per_accuracy
-        errors[:, PERIOD_INDEX] = np.maximum(errors[:, PERIOD_INDEX], self.parameter_errors)
+        errors[:, PERIOD_INDEX] = np.maximum(
+            errors[:, PERIOD_INDEX], self.parameter_errors_at_equal_deflection
+        )
         return replace(self.errors_at_equal_parameter, mesh_errors=errors)
 
     @cached_property
@@ -149,7 +154,9 @@ class BranchErrorCalibration:
         at equal deflection, in space and in time; the error of the multiplier is unchanged."""
         # A copy, because many cycles share one calibration.
         errors = self.errors_at_equal_parameter.mesh_errors.copy()
-        errors[:, [PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX]] = self.parameter_errors[:, None]
+        errors[:, [PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX]] = (
+            self.parameter_errors_at_equal_deflection[:, None]
+        )
         return replace(self.errors_at_equal_parameter, mesh_errors=errors)
 
     def with_grown_errors(self, growth: Array) -> "BranchErrorCalibration":
@@ -157,7 +164,9 @@ class BranchErrorCalibration:
         own = self.errors_at_equal_parameter
         calibration = replace(own, mesh_errors=growth[:, None] * own.mesh_errors)
         return replace(
-            self, errors_at_equal_parameter=calibration, parameter_errors=growth * self.parameter_errors
+            self,
+            errors_at_equal_parameter=calibration,
+            parameter_errors_at_equal_deflection=growth * self.parameter_errors_at_equal_deflection,
         )
 
     def interpolate(
@@ -165,43 +174,46 @@ class BranchErrorCalibration:
         other: "BranchErrorCalibration",
         fraction: float,
         sensitivities: tuple[float, float],
-        multiplier_sensitivity: MultiplierSensitivity,
+        multiplier_sensitivity: MultiplierErrorAmplification,
     ) -> "BranchErrorCalibration":
         """Interpolated errors of a cycle on the branch between two measured cycles with the same mesh. other:
-        errors of the second measured cycle. fraction: fraction of the arc length from the first measured
-        cycle to the interpolated one. sensitivities (`tip_y_sensitivity`, `period_sensitivity`),
-        multiplier_sensitivity: of the interpolated cycle.
-        Near a fold or a Hopf point errors at equal parameter are proportional to the sensitivity, which
-        changes by factors between two cycles; their quotients are interpolated. The errors are not below the
-        smaller of the two measured errors, which need not depend on the sensitivity.
+        errors of the second measured cycle. fraction: arc length from the first measured cycle to the
+        interpolated cycle, divided by the arc length between the measured cycles. sensitivities
+        (`relative_tip_y_sensitivity`, `relative_period_sensitivity`), multiplier_sensitivity: of the
+        interpolated cycle. Near a fold or a Hopf point errors at equal parameter are proportional to the
+        sensitivity, which changes by factors between two cycles; therefore error divided by sensitivity is
+        interpolated. The result is not below the smaller of the two measured errors, which need not depend on
+        the sensitivity.
         """
         first, second = (
             self.errors_at_equal_parameter.mesh_errors,
             other.errors_at_equal_parameter.mesh_errors,
         )
-        parameter_errors = _log_interpolated_errors(self.parameter_errors, other.parameter_errors, fraction)
+        parameter_errors = _log_interpolated_errors(
+            self.parameter_errors_at_equal_deflection, other.parameter_errors_at_equal_deflection, fraction
+        )
         quotients = _log_interpolated_errors(
             first / self._error_sensitivity_factors, second / other._error_sensitivity_factors, fraction
         )
         errors = max(sensitivities[0], 1.0) * quotients
         for part in errors:
-            part[MULTIPLIER_ERROR_INDEX] = multiplier_sensitivity.error_from_quotient(
-                float(part[MULTIPLIER_ERROR_INDEX])
+            part[LARGEST_MULTIPLIER_ERROR_INDEX] = multiplier_sensitivity.error_from_quotient(
+                float(part[LARGEST_MULTIPLIER_ERROR_INDEX])
             )
         # The interpolated errors contain their growth since the last measurement.
         calibration = replace(
             self.errors_at_equal_parameter,
             mesh_errors=np.maximum(errors, np.minimum(first, second)),
-            space_time_error_growth=np.ones(2),
+            error_growth_since_measurement=np.ones(2),
         )
         return BranchErrorCalibration(calibration, parameter_errors, *sensitivities, multiplier_sensitivity)
 
     @property
     def _error_sensitivity_factors(self) -> Array:
-        """Factors, (5,), by which errors of the cycle at equal parameter grow: `tip_y_sensitivity`, at least
-        1; for the multiplier times the factor of `multiplier_sensitivity`."""
-        factors = np.full(ERROR_COUNT, max(self.tip_y_sensitivity, 1.0))
-        factors[MULTIPLIER_ERROR_INDEX] *= self.multiplier_sensitivity.error_growth_factor
+        """Factors, (5,), by which errors of the cycle at equal parameter grow: `relative_tip_y_sensitivity`,
+        at least 1; for the multiplier times the factor of `multiplier_sensitivity`."""
+        factors = np.full(ERROR_COUNT, max(self.relative_tip_y_sensitivity, 1.0))
+        factors[LARGEST_MULTIPLIER_ERROR_INDEX] *= self.multiplier_sensitivity.error_growth_factor
         return factors
 
 

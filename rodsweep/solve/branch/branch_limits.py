@@ -59,7 +59,7 @@ class BranchLimits:
     breakings: Sequence[SymmetryBreaking] = ()
     """Symmetry breakings found so far on the branches of the rod."""
     hopfs_beyond_range: Sequence[HopfBranchStart] = ()
-    """Hopf points of the rod beyond the ends of the range; a branch may end just beyond."""
+    """Hopf points of the rod beyond the ends of the range; a branch may end at such a point just beyond."""
     locates_special_points: bool = True
     """Whether all special points between the ends of a branch are located; on parts beyond the range only
     folds and symmetry breakings are."""

@@ -37,7 +37,10 @@ def expected_error_growth(
     growth: Array = error_growth_factors(*tails)
     if known is measured:
         errors = [
-            np.maximum(point.calibration.parameter_errors, BRANCH_ERROR_SETTINGS.min_error_for_logarithm)
+            np.maximum(
+                point.calibration.parameter_errors_at_equal_deflection,
+                BRANCH_ERROR_SETTINGS.min_error_for_logarithm,
+            )
             for point in (measured, measured_end)
         ]
         growth = np.maximum(growth, errors[1] / errors[0])
@@ -46,9 +49,10 @@ def expected_error_growth(
 
 
 def mesh_for_next_cycles(end: BranchCycle, growth: Array, accuracy: float) -> OrbitMesh | None:
-    """The mesh for the next cycles of the branch after `end`, whose errors were measured; None if its own
-    mesh is expected to suffice up to the next measured cycle. growth: expected growth factors of the errors
-    up to there, (2,)."""
+    """The mesh for the next cycles of the branch after `end`, whose errors were measured; None if the mesh of
+    `end` remains in use, because it is expected to suffice up to the next measured cycle and no much cheaper
+    mesh does, or because no sufficient mesh is allowed. growth: expected growth factors of the errors in
+    space and in time up to there, (2,). accuracy: relative accuracy of the cycles."""
     mesh = end.calibration.mesh
     expected = end.calibration.with_grown_errors(growth)
     cheapest = expected.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_per_accuracy * accuracy)

@@ -18,13 +18,13 @@ from ..orbit.newton import ConvergedOrbit, nontrivial_multipliers_and_error
 from ..orbit.orbit_mesh import OrbitMesh, mesh_limit_error, mesh_of_orbit
 from ..unsolvable import MeshLimitReached
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, branch_derivatives, tangent_at
-from .bordered.condition import BorderCondition
+from .bordered.border_condition import BorderCondition
 from .bordered.corrected_linearisation import linearisation_of
 from .bordered.scale import ArcLengthScale
 from .branch_error_measurement import measured_branch_error_calibration, parameter_sensitivities
 from .branch_errors import BranchErrorCalibration, branch_newton_tolerance
 from .branch_mesh_ahead import expected_error_growth, mesh_for_next_cycles
-from .multiplier_sensitivity import MultiplierSensitivity
+from .multiplier_sensitivity import MultiplierErrorAmplification
 from .settings import BRANCH_MESH_SETTINGS
 
 
@@ -57,11 +57,11 @@ def first_cycle_with_measured_errors(
 
 
 def is_error_measurement_due(point: BranchCycle, accuracy: float) -> bool:
-    """Whether the errors of a cycle of the relative accuracy `accuracy` must be measured: the last measured
-    cycle is too many steps away, or the errors have grown too much since that cycle."""
+    """Whether the errors of the cycle `point`, of the relative accuracy `accuracy`, must be measured: the
+    last measured cycle is too many steps away, or the errors have grown too much since that cycle."""
     settings = BRANCH_MESH_SETTINGS
     errors = point.calibration.errors_at_equal_parameter.with_errors_scaled_on_branch(point.orbit)
-    growth = float(errors.space_time_error_growth.max())
+    growth = float(errors.error_growth_since_measurement.max())
     max_growth = settings.max_error_growth_since_measurement
     # Small errors stay within the accuracy, even if they grow by the largest allowed factor.
     has_small_errors = point.calibration.largest_weighted_error(accuracy) * max_growth <= accuracy
@@ -84,7 +84,7 @@ def with_errors_of_calibration(
     point: BranchCycle, calibration: BranchErrorCalibration, accuracy: float
 ) -> BranchCycle:
     """The cycle `point`, solved to a relative accuracy, with the errors of `calibration`, which was measured
-    or interpolated at this cycle. In the result the number of unmeasured steps is 0."""
+    or interpolated at this cycle. Its steps and arc length since an error measurement are set to 0."""
     before = point.cycle
     cycle = _cycle_with_branch_errors(calibration, before.converged_orbit, accuracy, before.motion)
     return replace(
@@ -164,10 +164,10 @@ def cycles_with_errors_within_accuracy(
     """The cycles `points` of a branch, all with errors within the accuracy; raises Unsolvable. measured: the
     cycle before `points`, whose errors were measured.
 
-    Errors are measured at the last cycle of `points`, and interpolated at the other cycles between `measured`
-    and this cycle. A cycle that is too inaccurate is solved again on the mesh of the last cycle. condition:
-    equation that defines the last cycle on every mesh; by default the condition that its arc length is
-    unchanged.
+    Errors are measured at the last cycle; at the cycles between, the errors of `measured` and of the last
+    cycle are interpolated. The last cycle is solved on a finer mesh if its own does not suffice; every other
+    cycle that is too inaccurate is solved again on this mesh. condition: equation that keeps the last cycle
+    the same on all meshes; by default, that its arc length is unchanged.
     """
     *between, end = points
     total_length = end.arc_length_since_error_measurement
@@ -193,8 +193,8 @@ def cycles_with_errors_within_accuracy(
 
 def _cycle_on_mesh_of(end: BranchCycle, point: BranchCycle, accuracy: float) -> BranchCycle:
     """The cycle `point`, whose estimated errors exceed the accuracy, solved again on the mesh of the later
-    cycle `end`, with the errors of `end`; on a mesh chosen by its own measured errors if `end` has the same
-    mesh, or if the errors of `end` are too large; raises Unsolvable."""
+    cycle `end`, with the errors of `end`. If `end` has the mesh of `point`, or if the errors of `end` are too
+    large, the errors of `point` itself are measured and determine its mesh. Raises Unsolvable."""
     if mesh_of_orbit(end.orbit) == mesh_of_orbit(point.orbit):
         return solve_on_sufficient_mesh(point, accuracy)
     solved = solved_on_mesh(point, mesh_of_orbit(end.orbit), point.arc_length_condition(0.0), accuracy)
@@ -213,7 +213,7 @@ def _with_interpolated_errors(
     fraction: fraction of the arc length from `start` to `end` at which `point` lies. accuracy: relative
     accuracy of the cycles. If `start` has another mesh, the errors of `end` are used. If the coefficient
     tails of `point` are much larger than at `start` and `end`, or if the parameter changes more slowly than
-    at `start` and `end`, as near a fold, the errors at `start` and `end` are no bound: the interpolated
+    at `start` and `end`, as near a fold, the errors at `start` and `end` are not a bound: the interpolated
     errors are multiplied by the growth, or measured if the growth is large or the parameter changes slowly.
     """
     # Errors are interpolated only between cycles on one mesh.
@@ -224,7 +224,7 @@ def _with_interpolated_errors(
         [
             measured.calibration.errors_at_equal_parameter.with_errors_scaled_on_branch(
                 point.orbit
-            ).space_time_error_growth
+            ).error_growth_since_measurement
             for measured in (start, end)
         ]
     ).min(axis=0)
@@ -240,7 +240,7 @@ def _with_interpolated_errors(
         end.calibration,
         fraction,
         parameter_sensitivities(point.cycle.motion, point.derivatives),
-        MultiplierSensitivity.of_cycle(point.cycle.converged_orbit),
+        MultiplierErrorAmplification.of_cycle(point.cycle.converged_orbit),
     )
     if growth.max() > BRANCH_MESH_SETTINGS.max_uncorrected_tail_growth:
         calibration = calibration.with_grown_errors(growth)

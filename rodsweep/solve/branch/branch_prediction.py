@@ -27,7 +27,8 @@ class BranchPredictionSettings:
 
     min_cosine_between_tangents: float = 0.2
     """An earlier cycle is used only if the cosine of the angle between its tangent and the tangent at the
-    last cycle is at least this number: beyond, the arc length along the last tangent is no variable."""
+    last cycle is at least this number: at a larger angle, the arc length along the last tangent is not a
+    suitable variable."""
 
 
 BRANCH_PREDICTION_SETTINGS = BranchPredictionSettings()
@@ -36,7 +37,7 @@ BRANCH_PREDICTION_SETTINGS = BranchPredictionSettings()
 @dataclass(frozen=True, eq=False)
 class PreviousCycle:
     """The previous cycle of a branch. tangent: tangent of the branch at `orbit`, of any length, (N + 1,).
-    errors: errors of the cycle. previous: the cycle before."""
+    errors: errors of the cycle. previous: the cycle before it, or None."""
 
     orbit: Orbit
     tangent: Array
@@ -47,8 +48,8 @@ class PreviousCycle:
 class HermiteNode(NamedTuple):
     """An earlier cycle on the mesh of the last cycle. arc_length: arc length along the tangent at the last
     cycle, negative behind it. difference_from_last_cycle: orbit values and parameter coordinate minus those
-    of the last cycle, (N + 1,). difference_per_arc_length: their derivative with respect to the position, (N
-    + 1,)."""
+    of the last cycle, (N + 1,). difference_per_arc_length: derivative of orbit values and parameter
+    coordinate with respect to `arc_length`, (N + 1,)."""
 
     arc_length: float
     difference_from_last_cycle: Array
@@ -58,9 +59,9 @@ class HermiteNode(NamedTuple):
 def hermite_nodes(
     orbit: Orbit, scale: ArcLengthScale, unit_tangent: Array, previous: PreviousCycle | None
 ) -> list[HermiteNode]:
-    """The last one or two cycles before the cycle `orbit`, the nearest first; empty if there is none behind
-    this cycle. scale, unit_tangent: scale and tangent at `orbit`, the latter in components (deflection, log
-    period, parameter), (3,)."""
+    """The last one or two cycles before the cycle `orbit`, the nearest first; empty if no earlier cycle lies
+    behind this cycle. previous: the previous cycle of the branch, or None. scale, unit_tangent: scale and
+    tangent at `orbit`, the latter in components (deflection, log period, parameter), (3,)."""
     data: list[HermiteNode] = []
     for cycle in (previous, previous and previous.previous):
         if cycle is None:
@@ -78,7 +79,7 @@ def _hermite_node(
     orbit: Orbit, scale: ArcLengthScale, unit_tangent: Array, cycle: PreviousCycle
 ) -> HermiteNode | None:
     """The earlier cycle `cycle` as a datum for predictions from `orbit`; None if the branch has turned too
-    far between the two. scale, unit_tangent: as in `hermite_nodes`, the latter (3,)."""
+    far between the two orbits. scale, unit_tangent: as in `hermite_nodes`, the latter (3,)."""
     mesh = mesh_of_orbit(orbit)
     name = scale.parameter_name
     earlier = mesh.interpolated_orbit(cycle.orbit)
@@ -115,7 +116,7 @@ def parameter_change_polynomial(
     tangent: Array, data: Sequence[HermiteNode], ends: tuple[float, float]
 ) -> Polynomial:
     """The predicted change of the parameter coordinate as a polynomial of the arc length between `ends`.
-    tangent: as in `predicted_change`, (N + 1,)."""
+    tangent, (N + 1,), and data: as in `predicted_change`."""
     degree = 1 + 2 * len(data)
     lengths = np.linspace(*ends, degree + 1)
     last_components = [

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..unsolvable import Unsolvable
 from .arc_length_step import BranchCycle
-from .bordered.condition import BorderCondition
+from .bordered.border_condition import BorderCondition
 from .branch_curve import BranchCurve, BranchEnd, StoredBranchCycle
 from .branch_mesh_choice import cycles_with_errors_within_accuracy
 from .special.special_point import SpecialPoint, SpecialPointKind
@@ -17,7 +17,7 @@ from .status import BranchEndReason, reason_of_failure
 
 def branch_end_point(point: BranchCycle, reason: BranchEndReason, message: str = "") -> SpecialPoint:
     """The special point for the end of a branch at its last cycle `point`; the errors are NaN, to be set by
-    the caller. message: cause of a failure."""
+    the caller. reason: why the branch ends. message: cause of a failure."""
     measures = point.cycle.measures
     value = getattr(point.orbit.form.rod, point.scale.parameter_name)
     return SpecialPoint(
@@ -42,12 +42,12 @@ class BranchRecord:
         self.accuracy = accuracy
         self._last_measured = first_cycle
         self._unmeasured: list[BranchCycle] = []
-        curve.points.append(StoredBranchCycle.from_cycle(first_cycle, accuracy))
+        curve.stored_cycles.append(StoredBranchCycle.from_cycle(first_cycle, accuracy))
 
     def append(self, point: BranchCycle) -> None:
         """Appends the cycle `point`, whose errors are not measured."""
         self._unmeasured.append(point)
-        self.curve.points.append(StoredBranchCycle.from_cycle(point, self.accuracy))
+        self.curve.stored_cycles.append(StoredBranchCycle.from_cycle(point, self.accuracy))
 
     def bring_errors_within_accuracy(self, condition: BorderCondition | None = None) -> BranchCycle:
         """Measures or interpolates the errors of all cycles appended since the last measurement, and solves
@@ -61,7 +61,7 @@ class BranchRecord:
             points = cycles_with_errors_within_accuracy(
                 self._last_measured, self._unmeasured, self.accuracy, condition
             )
-            self.curve.points[-len(points) :] = [
+            self.curve.stored_cycles[-len(points) :] = [
                 StoredBranchCycle.from_cycle(point, self.accuracy) for point in points
             ]
             self._last_measured = points[-1]
@@ -80,7 +80,7 @@ class BranchRecord:
             special = branch_end_point(self._last_measured, reason_of_failure(reason), message)
             end = replace(end, special_point=special, is_complete=False)
         special = end.special_point
-        last_point = curve.points[-1]
+        last_point = curve.stored_cycles[-1]
         if np.isnan(special.error):
             special = replace(special, error=last_point.parameter_value_error * abs(special.parameter_value))
         if np.isnan(special.period_error):  # the end is the last cycle

@@ -101,8 +101,8 @@ class BranchSearch:
                 self.failures.append(f"{same}: two branches nearly touch")
 
     def _limits_of_next_branch(self) -> BranchLimits:
-        """Limits of the next branch, with the symmetry breakings on the branches so far."""
-        cycles_left = self.limits.max_cycles - sum(len(curve.points) for curve in self.curves)
+        """Limits of the next branch, with the symmetry breakings found so far."""
+        cycles_left = self.limits.max_cycles - sum(len(curve.stored_cycles) for curve in self.curves)
         breakings = symmetry_breakings_in([curve.special_points for curve in self.curves])
         return replace(self.limits, max_cycles=cycles_left, breakings=breakings)
 
@@ -123,8 +123,8 @@ class BranchSearch:
                 self.curves.append(follow_branch_from_hopf_point(hopf_index, self._limits_of_next_branch()))
 
     def follow_from_symmetry_breakings(self) -> None:
-        """Follows the branches of asymmetric cycles from all symmetry breakings on the branches so far; a
-        branch between two symmetry breakings only once."""
+        """Follows the branches of asymmetric cycles from all symmetry breakings found so far; a branch
+        between two symmetry breakings only once."""
         for index, breaking in enumerate(self._limits_of_next_branch().breakings):
             if breaking in self.followed_breakings:
                 continue
@@ -135,14 +135,14 @@ class BranchSearch:
             self.curves.append(curve)
 
     def _folds_within_range_from_beyond(self) -> list[SpecialPoint]:
-        """Folds just within the range at which branches from beyond turn back between two cycles beyond."""
+        """Folds just within the range at which branches beyond it turn back between two of their cycles."""
         low, high = self.limits.coordinate_range
         coordinate = PARAMETERS[self.parameter_name].coordinate
         folds = (fold for region in self.regions for fold in region.folds)
         return [fold for fold in folds if low < coordinate(fold.parameter_value) < high]
 
     def follow_through_special_points(self, starts: Iterable[SpecialPoint]) -> None:
-        """Follows the branches through the special points `starts` that lie on no branch so far, and the
+        """Follows the branches through the special points `starts` that lie on no known branch, and the
         branches of asymmetric cycles from symmetry breakings on these branches."""
         for start in starts:
             # Tested for each start anew, as the branch of one start may pass the next.
@@ -160,7 +160,7 @@ class BranchSearch:
 
     def follow_beyond_range(self) -> None:
         """Follows the branches that leave the range, beyond its ends; where a branch enters the range again,
-        it continues as a further branch. Then follows the branches from symmetry breakings on further
+        it continues as a further branch. Then follows the branches from symmetry breakings on these further
         branches."""
         # The list grows inside the loop: a branch that enters may leave again.
         while unfollowed := [
@@ -186,14 +186,15 @@ class BranchSearch:
                 self._follow_branch_into_range(entry, region)
 
     def _range_end_passages(self) -> Iterator[RangeEndPassage]:
-        """Places at which the branches so far leave or enter the range."""
+        """Places at which the branches followed so far leave or enter the range."""
         return (place for curve in self.curves for place in _passages_of(curve))
 
     def _follow_branch_into_range(
         self, entry: RangeEndPassage, region: RegionBeyondRange, left_at: RangeEndPassage | None = None
     ) -> None:
-        """Appends the branch that enters the range at `entry`, unless a branch so far leaves the range there.
-        left_at: place at which the branch left the range before."""
+        """Appends the branch that enters the range at `entry`, unless a branch followed before leaves the
+        range there. region: region from which the branch comes. left_at: place at which the branch left the
+        range before."""
         known_passages = [p for p in self._range_end_passages() if p is not left_at and p.is_same_as(entry)]
         # The branch that leaves there leads to this entry, so it need not be followed in the other direction.
         self.followed_passages += known_passages
@@ -234,7 +235,7 @@ class BranchSearch:
             self.curves.append(curve)
 
     def _is_branch_known(self, curve: BranchCurve) -> bool:
-        """Whether a branch has a special point of a branch that was followed before."""
+        """Whether the branch `curve` has a special point of a branch that was followed before."""
         # At an end of the range two branches may agree within tolerances; elsewhere they do not.
         inner_points = (point for point in curve.special_points if point.kind != SpecialPointKind.end)
         return any(lies_on_a_branch(point, self.curves) for point in inner_points)

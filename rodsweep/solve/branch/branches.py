@@ -47,12 +47,12 @@ class BranchesOfRod:
     """Outcome of the task `branch` for one rod. crossings: Hopf points within the range, by ascending
     parameter. unstable_modes_at_start: number of unstable modes of the straight rod at the start, -1 if
     unknown. are_crossings_proved_complete: whether `crossings` is proved complete. curves: all branches.
-    seconds: computing time."""
+    seconds: computing time, in s."""
 
     status: BranchStatus
     """Status of the first problem, in the order of `BranchStatus`; `ok` without a problem."""
     message: str = ""
-    """Sentence parts for the user about all problems; "" without a problem."""
+    """Message for the user about all problems; "" without a problem."""
     seconds: float = 0.0
     crossings: tuple[Threshold, ...] = ()
     unstable_modes_at_start: int = -1
@@ -71,9 +71,10 @@ def solve_branches(
     workspace: NewtonWorkspace | None = None,
     starts: Sequence[SpecialPoint] = (),
 ) -> BranchesOfRod:
-    """All branches that start at Hopf points of a rod along a parameter, and the branches through the special
-    points `starts`; a failure becomes a status, never an exception. The rod's own value of this parameter is
-    not used. workspace: memory of Newton's matrices, which rods may share; None: a new workspace."""
+    """All branches that start at Hopf points of a rod along the parameter `request.along`, and the branches
+    through the special points `starts`; a failure becomes a status, never an exception. The rod's own value
+    of this parameter is not used. workspace: memory of Newton's matrices, which rods may share; None: a new
+    workspace."""
     memory = workspace or NewtonWorkspace()
     memory.limit_work(request.max_multiplications)
     try:
@@ -142,22 +143,23 @@ def _solve_branches_or_raise(
 
 
 def _range_end_reason(is_crushed: bool) -> BranchEndReason:
-    """Reason for the end of a branch at an end of the range, at which the force crushes the rod or not."""
+    """Reason for the end of a branch at an end of the range. is_crushed: whether the force crushes the rod
+    there."""
     return BranchEndReason.crushed if is_crushed else BranchEndReason.range_end
 
 
 def _hopf_branch_starts(
     path: ParameterPath, crossings: ThresholdSearchResult, is_omega_always_unknown: bool, unit: float
 ) -> tuple[list[HopfBranchStart], list[str]]:
-    """Returns (Hopf points with normal form, messages on Hopf points whose normal form failed).
-    is_omega_always_unknown, unit: arguments of `hopf_branch_start`."""
+    """Returns (Hopf points `crossings` with their normal forms, messages on Hopf points whose normal form
+    failed). is_omega_always_unknown, unit: arguments of `hopf_branch_start`."""
     hopfs = []
     failures = []
     for crossing in crossings.thresholds:
         try:
             hopfs.append(hopf_branch_start(path, crossing, is_omega_always_unknown, unit))
         except FAILURE_EXCEPTIONS as error:
-            place = f"{path.name} = {crossing.value:.12g}"
+            place = f"{path.parameter_name} = {crossing.value:.12g}"
             failures.append(f"no branch is followed from the Hopf point at {place}: {cause_of(error)}")
     return hopfs, failures
 

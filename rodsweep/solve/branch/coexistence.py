@@ -43,9 +43,9 @@ class StableStates(IntEnum):
 class CoexistenceRow:
     """Outcome for a row of a phase diagram. straight_rod_row: outcome for the straight rod. stable_states:
     `StableStates` at each parameter value, (values,). special_points: special points of all branches. status:
-    of the search for thresholds if it has a problem, otherwise of the branches. followed_range: smallest and
-    largest value of the parameter up to which branches are followed, as in `BranchesOfRod`. message: for the
-    user, or "". seconds: computing time."""
+    status of the search for thresholds if this search has a problem, otherwise status of the branches.
+    followed_range: smallest and largest value of the parameter up to which branches are followed, as in
+    `BranchesOfRod`. message: for the user, or "". seconds: computing time, in s."""
 
     straight_rod_row: DiagramRow
     stable_states: NDArray[np.int8]
@@ -64,9 +64,9 @@ def solve_coexistence(
     workspace: NewtonWorkspace | None = None,
     starts: Sequence[SpecialPoint] = (),
 ) -> CoexistenceRow:
-    """Stable states along one row of a phase diagram; a failure becomes a status, never an exception.
-    workspace: memory of Newton's matrices. starts: special points from which further branches are
-    followed."""
+    """Stable states along the row `request` of a phase diagram, whose rods differ from `rod` in one
+    parameter; a failure becomes a status, never an exception. workspace: memory of Newton's matrices. starts:
+    special points from which further branches are followed."""
     values = request.parameter_values
     row = solve_row(rod, request)
     start = _first_searched_value(row, request)
@@ -115,8 +115,8 @@ def row_branches(
 
 
 def _first_searched_value(row: DiagramRow, request: RowRequest) -> float:
-    """Value of the parameter from which a row was searched for thresholds: later than the first value if no
-    a-priori bound or no mesh covers a strong pull."""
+    """Value of the parameter from which the row was searched for thresholds: the first value of `request`, or
+    a later value if no a-priori bound or no mesh covers a strong pull."""
     result = row.thresholds.search_result
     values = request.parameter_values
     first = result.searched_interval[0]
@@ -207,14 +207,12 @@ def existence_of_stable_cycle(values: Array, branches: BranchesOfRod, certify: b
 
 
 def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
-    """Intervals of the parameter between successive special points of a branch, with the stability in each
-    interval."""
+    """Intervals of the parameter between successive special points of the branch `curve`, with the stability
+    in each interval."""
     intervals = []
     for first, second in zip(curve.special_points[:-1], curve.special_points[1:], strict=True):
-        stabilities = {
-            point.min_unstable_multiplier_count
-            for point in curve.points[first.index_of_cycle_before + 1 : second.index_of_cycle_before + 1]
-        } - {-1}
+        cycles = curve.stored_cycles[first.index_of_cycle_before + 1 : second.index_of_cycle_before + 1]
+        stabilities = {cycle.min_unstable_multiplier_count for cycle in cycles} - {-1}
         # Stability changes at special points only; if cycles between two of them disagree, it is undecided.
         stability = -1
         if stabilities == {0}:
@@ -223,15 +221,15 @@ def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
             stability = 0
         low, high = sorted((first, second), key=lambda point: point.parameter_value)
         inner_interval = (
-            low.parameter_value + _sign_of_interval_shortening(low) * low.error,
-            high.parameter_value - _sign_of_interval_shortening(high) * high.error,
+            low.parameter_value + _sign_of_range_shortening(low) * low.error,
+            high.parameter_value - _sign_of_range_shortening(high) * high.error,
         )
         outer_interval = low.parameter_value - low.error, high.parameter_value + high.error
         intervals.append(StabilityInterval(inner_interval, outer_interval, stability))
     return intervals
 
 
-def _sign_of_interval_shortening(point: SpecialPoint) -> int:
+def _sign_of_range_shortening(point: SpecialPoint) -> int:
     """Sign of the error of a special point in `range_shortened_by_errors`: 1 (the interval is shortened), or
     -1 at an end of the parameter range, where the branch has a cycle exactly at the end (the interval is
     extended)."""

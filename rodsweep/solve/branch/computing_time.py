@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ComputingTimeSettings:
+class ComputingTimeModelSettings:
     """Exponents of the model of the computing time, fitted to measured times."""
 
     hopf_distance_exponent: float = 0.75
@@ -21,7 +21,7 @@ class ComputingTimeSettings:
     """Exponent of the length D of a branch in the computing time of this branch."""
 
 
-COMPUTING_TIME_SETTINGS = ComputingTimeSettings()
+COMPUTING_TIME_MODEL_SETTINGS = ComputingTimeModelSettings()
 
 
 ParameterCoordinateRange = tuple[float, float]
@@ -33,7 +33,7 @@ def fraction_done(start: float, current: float, expected_end: float) -> float:
     `current`. start, expected_end: parameter coordinates at the start of the branch and at its expected
     end."""
     fraction = (current - start) / (expected_end - start) if expected_end != start else 1.0
-    return min(max(fraction, 0.0), 1.0) ** COMPUTING_TIME_SETTINGS.hopf_distance_exponent
+    return min(max(fraction, 0.0), 1.0) ** COMPUTING_TIME_MODEL_SETTINGS.hopf_distance_exponent
 
 
 def time_fractions_before_branches(
@@ -43,7 +43,8 @@ def time_fractions_before_branches(
     and after the last branch, (branches + 1,). starts: parameter coordinates of the Hopf points where the
     branches start. parameter_range: range of the parameter coordinate."""
     computing_times = [
-        max(abs(end - start) for end in parameter_range) ** COMPUTING_TIME_SETTINGS.branch_length_exponent
+        max(abs(end - start) for end in parameter_range)
+        ** COMPUTING_TIME_MODEL_SETTINGS.branch_length_exponent
         for start in starts
     ]
     times_before = [sum(computing_times[:branch_index]) for branch_index in range(len(computing_times) + 1)]

@@ -18,7 +18,7 @@ from ..orbit.newton import relative_change
 from ..orbit.orbit import Orbit
 from ..unsolvable import Unsolvable, WorkLimitReached
 from .arc_length_step import BranchCycle, tangent_at
-from .bordered.condition import BorderCondition, moved_orbit
+from .bordered.border_condition import BorderCondition, moved_orbit
 from .bordered.matrix import BorderedMatrix
 from .bordered.scale import ArcLengthScale, deflection_at_time_zero
 from .branch_continuation import follow_from_cycle
@@ -44,10 +44,11 @@ class DetachedBranchSettings:
     this step. If the difference is larger, the branch turns by about a right angle on this step, and the
     cycle may lie beyond another fold."""
     successive_accuracy_ratio: float = 0.01
-    """Ratio of a relative accuracy to the one before, if no branch through the point was found with the one
-    before: a mesh displaces a small closed branch, or a fold near an end of the range, by about the accuracy.
+    """Ratio of a relative accuracy to the previous one, tried if the previous accuracy gave no complete
+    branch through the point: a mesh displaces a small closed branch, or a fold near an end of the range, by
+    about the accuracy.
     """
-    min_accuracy: float = 1e-10
+    finest_accuracy: float = 1e-10
     """Smallest relative accuracy tried; special points are located to 1e-9."""
 
 
@@ -69,15 +70,16 @@ def follow_detached_branch(start: SpecialPoint, name: str, limits: BranchLimits)
 def complete_branch_through(
     start: SpecialPoint, name: str, limits: BranchLimits, is_known: Callable[[BranchCurve], bool]
 ) -> BranchCurve | None:
-    """The branch of `follow_detached_branch` that passes `start` and is complete, solved to a higher accuracy
-    if necessary; an incomplete one if no accuracy gives a complete one. None for a branch with `is_known`.
-    Raises Unsolvable if no branch is found, or if the branch found does not pass `start`."""
+    """The complete branch through `start`, found by `follow_detached_branch`, at a higher accuracy if
+    necessary; an incomplete branch if no accuracy gives a complete one. None if `is_known`, a function of the
+    branch found, returns True. Raises Unsolvable if no branch is found. If `start` is a fold, or if
+    `limits.locates_special_points`, also raises Unsolvable if the branch found does not pass `start`."""
     must_pass_start = limits.locates_special_points or start.kind == SpecialPointKind.fold
     incomplete: BranchCurve | None = None
     reason: Unsolvable | None = None
     accuracy = limits.accuracy
-    # The accuracy asked for is tried in any case, even below `min_accuracy`.
-    while accuracy == limits.accuracy or accuracy >= DETACHED_BRANCH_SETTINGS.min_accuracy:
+    # The accuracy asked for is tried in any case, even below `finest_accuracy`.
+    while accuracy == limits.accuracy or accuracy >= DETACHED_BRANCH_SETTINGS.finest_accuracy:
         try:
             curve = follow_detached_branch(start, name, replace(limits, accuracy=accuracy))
         except WorkLimitReached:
@@ -104,7 +106,7 @@ def follow_in_both_directions(first_cycle: BranchCycle, limits: BranchLimits) ->
     curve = follow_from_cycle(BranchCurve(start_hopf_index=-1), first_cycle, limits)
     if not curve.is_closed:
         # The first cycle is part of both directions but counts once.
-        remaining_limits = replace(limits, max_cycles=limits.max_cycles - len(curve.points) + 1)
+        remaining_limits = replace(limits, max_cycles=limits.max_cycles - len(curve.stored_cycles) + 1)
         backward_curve = follow_from_cycle(
             BranchCurve(start_hopf_index=-1),
             cycle_in_opposite_branch_direction(first_cycle),
@@ -147,8 +149,8 @@ class _Tangent:
 
 
 def _tangent_towards_larger_cycles(orbit: Orbit, name: str, limits: BranchLimits) -> _Tangent:
-    """Tangent of a branch towards larger deflections, at an orbit on a mesh for the accuracy of the
-    branch."""
+    """Tangent of a branch along the parameter `name` towards larger deflections, at `orbit` on a mesh for the
+    accuracy of the branch."""
     mesh = mesh_from_coefficient_tails(orbit, limits.accuracy, cheapest_stage_count(limits.accuracy))
     orbit = mesh.interpolated_orbit(orbit)
     tip_y = abs(float(orbit.form.tip_coordinates(orbit.start_state)[1]))
@@ -191,7 +193,8 @@ def _cycle_behind_orbit(tangent: _Tangent, distance: float, limits: BranchLimits
 
 
 def cycle_in_opposite_branch_direction(cycle: BranchCycle) -> BranchCycle:
-    """The cycle of a branch, for the continuation in the opposite direction."""
+    """The cycle `cycle` of a branch, with its tangents reversed for the continuation in the opposite
+    direction."""
     derivatives = cycle.derivatives
     turned_derivatives = replace(
         derivatives, tangent=-derivatives.tangent, unit_tangent=-derivatives.unit_tangent

@@ -30,8 +30,9 @@ from .symmetry_breaking import (
 
 
 def passes_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:
-    """Whether a Hopf point lies between two cycles: the bending moments at t = 0 then have opposite signs.
-    The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
+    """Whether a Hopf point lies between the cycles `start` and `end`: the bending moments at t = 0 then have
+    opposite signs. The sign of the tip's y is not a criterion: on a large cycle an extremum of y may pass
+    through 0."""
     mesh = mesh_of_orbit(end.orbit)
     layout = end.orbit.form.layout
     # Moments can be multiplied only at the same nodes.
@@ -54,15 +55,18 @@ def end_or_shorter_step_at_mirror_image(
 
 
 def accurate_end_before_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> BranchEnd | None:
-    """The end of a branch at the end of the range between two cycles, by the normal form of a Hopf point
-    behind this end, if it is accurate and a cycle solved at the end of the range is not; otherwise None."""
+    """The end of a branch at the end of the range between the cycles `start` and `end`, by the normal form of
+    a Hopf point behind this end; None unless the normal form is accurate there and a cycle solved at the end
+    of the range would not be."""
     index = index_of_passed_range_end(end, limits.coordinate_range)
     is_large = start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_amplitude_before_extrapolation
     if index < 0 or is_large or not start.orbit.is_symmetric:
         return None
     range_end = limits.coordinate_range[index]
     for hopf in limits.hopfs_beyond_range:
-        if _shrinks_to_hopf_point(start, hopf, limits.accuracy) and not _has_fold_ahead(start, hopf, limits):
+        if _shrinks_to_hopf_point(start, hopf, limits.accuracy) and not _has_fold_before_hopf_end(
+            start, hopf, limits
+        ):
             solved_errors = expected_errors_of_solved_cycle(start, range_end, hopf)
             branch_end = end_at_range_end_near_hopf(start, hopf, limits)
             is_accurate = has_accurate_range_end(branch_end, start, hopf, limits)
@@ -103,17 +107,17 @@ def _known_hopf_end_or_shorter_step(
     for number, hopf in enumerate(limits.hopfs):
         if _shrinks_to_hopf_point(start, hopf, limits.accuracy):
             # The parameter must still turn before the Hopf point, which a smaller cycle shows.
-            if _has_fold_ahead(start, hopf, limits) and shorter is not None:
+            if _has_fold_before_hopf_end(start, hopf, limits) and shorter is not None:
                 return shorter
             return BranchEnd(hopf_as_special_point(hopf), is_complete=True, end_hopf_index=number)
-    # The branch ends at the end of the range then, which it passes before the Hopf point.
+    # Then the branch ends at the end of the range, which lies before the Hopf point.
     for hopf in limits.hopfs_beyond_range:
         if _shrinks_to_hopf_point(start, hopf, limits.accuracy):
             end_before_hopf = end_at_range_end_near_hopf(start, hopf, limits)
             is_final = _is_smallest_to_solve(start, limits) or has_accurate_range_end(
                 end_before_hopf, start, hopf, limits
             )
-            if shorter is not None and (_has_fold_ahead(start, hopf, limits) or not is_final):
+            if shorter is not None and (_has_fold_before_hopf_end(start, hopf, limits) or not is_final):
                 return shorter
             if end_before_hopf is not None:
                 return end_before_hopf
@@ -136,10 +140,10 @@ def _shrinks_to_hopf_point(start: BranchCycle, hopf: HopfBranchStart, accuracy: 
     )
 
 
-def _has_fold_ahead(start: BranchCycle, hopf: HopfBranchStart, limits: BranchLimits) -> bool:
+def _has_fold_before_hopf_end(start: BranchCycle, hopf: HopfBranchStart, limits: BranchLimits) -> bool:
     """Whether a branch has a fold between the cycle `start` and the Hopf point `hopf` where it ends: the
-    parameter at `start` moves in the direction in which, by the normal form, it leaves the Hopf point. False
-    for a cycle of the smallest amplitude, before which no fold is sought."""
+    parameter at `start` moves in the direction in which, by the normal form, the branch leaves the Hopf
+    point. False for a cycle of the smallest amplitude, before which no fold is sought."""
     return (
         not _is_smallest_to_solve(start, limits)
         and start.parameter_per_arc_length * hopf.parameter_direction > 0

@@ -29,7 +29,7 @@ MULTIPLIER_SENSITIVITY_SETTINGS = MultiplierSensitivitySettings()
 
 
 @dataclass(frozen=True, slots=True)
-class MultiplierSensitivity:
+class MultiplierErrorAmplification:
     """Sensitivity of the largest nontrivial multiplier of a cycle to errors of the mesh. modulus: modulus of
     this multiplier over the period, at least 1. amplification_by_near_multiplier: growth of its errors
     because another multiplier is near, at least 1."""
@@ -38,7 +38,7 @@ class MultiplierSensitivity:
     amplification_by_near_multiplier: float
 
     @classmethod
-    def of_cycle(cls, solved: ConvergedOrbit) -> "MultiplierSensitivity":
+    def of_cycle(cls, solved: ConvergedOrbit) -> "MultiplierErrorAmplification":
         """The sensitivity at the cycle `solved`."""
         # Over a whole period h and -h coincide, although neither has an effect on the other.
         multipliers = solved.matrix.multipliers_over_solved_time_interval
@@ -90,5 +90,5 @@ class MultiplierSensitivity:
 
     @property
     def error_growth_factor(self) -> float:
-        """Product of modulus and amplification."""
+        """Product of `modulus` and `amplification_by_near_multiplier`."""
         return self.modulus * self.amplification_by_near_multiplier

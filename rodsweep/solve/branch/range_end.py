@@ -19,7 +19,7 @@ from .arc_length_step import (
     cycle_at_length,
     tangent_at,
 )
-from .bordered.condition import BorderCondition, moved_orbit
+from .bordered.border_condition import BorderCondition, moved_orbit
 from .bordered.corrected_linearisation import linearisation_of
 from .bordered.scale import PARAMETER_DIRECTION
 from .branch_errors import branch_newton_tolerance
@@ -34,8 +34,8 @@ def range_end_condition(start: BranchCycle, limit: float) -> BorderCondition:
 
 
 def index_of_passed_range_end(point: BranchCycle, range_ends: tuple[float, float]) -> int:
-    """Index of the end of the range beyond which a cycle lies: 0 below the range, 1 above, -1 within the
-    range. range_ends: smallest and largest coordinate of the range."""
+    """Index of the end of the range beyond which the cycle `point` lies: 0 below the range, 1 above, -1
+    within the range. range_ends: smallest and largest coordinate of the range."""
     low, high = range_ends
     if point.parameter_coordinate < low:
         return 0
@@ -56,7 +56,7 @@ def cycle_at_range_end(
     tolerance = BRANCH_END_SETTINGS.range_end_step_tolerance
     end_distances = beyond(0.0), beyond(segment.length)
     inner_length = 0.0
-    # The step begins at the end of the range, so its first zero is not the one that is sought.
+    # The step begins at the end of the range, so the first zero is not the zero that is sought.
     if abs(end_distances[0]) <= tolerance * abs(end_distances[1]):
         inner_length = _step_length_into_range(beyond, segment.length)
         end_distances = beyond(inner_length), end_distances[1]
@@ -67,8 +67,9 @@ def cycle_at_range_end(
 
 
 def _step_length_into_range(beyond: Callable[[float], float], step: float) -> float:
-    """Length at which a step that begins at the end of the range lies within the range: the branch enters the
-    range there, and leaves it behind a fold. 0 if the step leads out of the range at once.
+    """A length along a step at which the branch lies within the range, although the step begins and ends at
+    or beyond an end of the range: the branch enters the range and leaves it again behind a fold. 0 if the
+    step leads out of the range at once.
 
     beyond: signed distance from the end of the range, by length. step: length of the step.
     """
@@ -82,9 +83,9 @@ def _step_length_into_range(beyond: Callable[[float], float], step: float) -> fl
 
 def cycle_at_range_end_beside_zero(start: BranchCycle, low: float, accuracy: float) -> BranchCycle | None:
     """The cycle at the smallest coordinate `low` of the range, for a parameter that cannot be negative, if
-    the next step could pass the coordinate 0, where no rod is. None unless the tangent at `start` reaches 0
-    within the next step; also None if no cycle is found, as when the branch folds before `low`. Raises
-    WorkLimitReached."""
+    the next step could pass the coordinate 0, beyond which no rod exists. None unless the tangent at `start`
+    reaches 0 within the next step; also None if no cycle is found, as when the branch folds before `low`.
+    accuracy: relative accuracy. Raises WorkLimitReached."""
     rate = float(start.tangent[-1])
     coordinate = start.parameter_coordinate
     name = start.scale.parameter_name
@@ -108,9 +109,9 @@ def cycle_at_range_end_beside_zero(start: BranchCycle, low: float, accuracy: flo
 def cycle_with_step_into_range(
     start: BranchCycle, range_ends: tuple[float, float], index: int, accuracy: float
 ) -> BranchCycle | None:
-    """The cycle `start`, at the range end `range_ends[index]`, with a next step that ends within the range or
-    beyond its second end, although a fold may follow; None if the shortest step does not end there. accuracy:
-    relative accuracy."""
+    """The cycle `start`, at the range end `range_ends[index]`, with the length of the next step halved until
+    the step ends within the range or beyond its other end: a longer step may lead over a fold back out of the
+    range. None if even the shortest step does not end there. accuracy: relative accuracy."""
     length = start.next_step_length
     while length >= ARC_STEP_CONTROL.min_length:
         try:
@@ -125,16 +126,16 @@ def cycle_with_step_into_range(
     return None
 
 
-def cycle_within_range(
+def cycle_within_range_and_end_index(
     start: BranchCycle, end: BranchCycle, range_ends: tuple[float, float], accuracy: float
 ) -> tuple[BranchCycle, int]:
     """Returns (cycle, index). cycle: `end`, or the cycle where the branch first leaves the parameter range
     between `start` and `end`. index: index in `range_ends` of the range end at this cycle; -1 if the cycle is
     within the range. Raises Unsolvable.
 
-    range_ends: smallest and largest coordinate of the range. Between two cycles within the range the branch
-    may leave the range and return, if a fold lies beyond an end. A step over such a fold would continue on
-    another part of the branch.
+    range_ends: smallest and largest coordinate of the range. accuracy: relative accuracy of the cycle.
+    Between two cycles within the range the branch may leave the range and return, if a fold lies beyond an
+    end. A step over such a fold would continue on another part of the branch.
     """
     coordinate = end.parameter_coordinate
     for index, is_beyond in ((0, coordinate <= range_ends[0]), (1, coordinate >= range_ends[1])):

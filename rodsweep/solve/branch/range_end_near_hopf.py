@@ -28,7 +28,8 @@ def end_at_range_end_near_hopf(
     start: BranchCycle, hopf: HopfBranchStart, limits: BranchLimits
 ) -> BranchEnd | None:
     """The end of a branch at the end of the range between its last cycle `start`, within the range, and the
-    Hopf point `hopf` beyond the range; None if the cycles of the normal form do not lie between both."""
+    Hopf point `hopf` beyond the range; None if this end of the range does not lie between the two, or if the
+    normal form has no cycles there."""
     low, high = limits.coordinate_range
     index = 0 if hopf.parameter_coordinate < low else 1
     distance = limits.coordinate_range[index] - hopf.parameter_coordinate
@@ -70,9 +71,9 @@ def end_before_first_cycle(
 def has_accurate_range_end(
     end: BranchEnd | None, start: BranchCycle, hopf: HopfBranchStart, limits: BranchLimits
 ) -> bool:
-    """Whether the branch has the end `end` of `end_at_range_end_near_hopf`, and its errors of period and
-    largest tip y meet the accuracy or are at most the errors of a cycle that is solved at the end of the
-    range.
+    """Whether `end`, the result of `end_at_range_end_near_hopf`, is not None and has errors of period and
+    largest tip y that are within the accuracy, or at most the expected errors of a cycle solved at the end of
+    the range. start, hopf, limits: as for `end_at_range_end_near_hopf`.
 
     A mesh displaces the Hopf point, so the errors of the largest y of its cycles grow with 1/distance from
     this point. The errors of the normal form decrease with the distance.
@@ -101,9 +102,9 @@ def _period_and_largest_tip_y_errors(errors: CycleErrors) -> Array:
 def _normal_form_point_at_range_end(
     start: BranchCycle, hopf: HopfBranchStart, limits: BranchLimits, index: int
 ) -> SpecialPoint:
-    """The special point at the end of the range with the index `index`, between the cycle `start` and the
-    Hopf point `hopf`: the normal form, corrected by its deviation from the cycles near the Hopf point. The
-    errors of the correction, of the coefficients of the normal form and of the Hopf point are added."""
+    """The special point at the end `index` of the range (0 or 1): the normal form of `hopf`, corrected by its
+    deviation from `start` and earlier cycles near the Hopf point. The errors of the correction, of the
+    coefficients of the normal form and of the Hopf point are added."""
     coordinate = limits.coordinate_range[index]
     distance = abs(coordinate - hopf.parameter_coordinate)
     deviations, (period_error, amplitude_error) = _deviations_of_normal_form(start, hopf, distance)
@@ -127,9 +128,10 @@ def _normal_form_point_at_range_end(
 def _deviations_of_normal_form(
     start: BranchCycle, hopf: HopfBranchStart, distance: float
 ) -> tuple[Array, Array]:
-    """Returns (deviations, errors): relative deviations of period and largest tip y, by the normal form of
-    `hopf` with exact coefficients, from the cycle at a distance of the parameter coordinate from the Hopf
-    point, and their errors, (2,) each.
+    """Returns (deviations, errors), (2,) each: relative deviations of period and largest tip y in the normal
+    form of `hopf`, with exact coefficients, from the true cycle, and the errors of these deviations.
+    distance: distance of the cycle's parameter coordinate from the Hopf point. start: a solved cycle of the
+    branch near the Hopf point.
 
     Near the Hopf point these deviations are proportional to the distance. Every cycle there gives an
     estimate: its deviation, scaled to the distance. An estimate has two errors: the scaled error of the

@@ -4,7 +4,7 @@ A branch may leave the range, turn back at a fold beyond its end, and enter the 
 a Hopf point beyond the end may enter the range. Both are followed up to the place where they enter the range.
 Folds and symmetry breakings in the region are located, and branches of asymmetric cycles are followed too. A
 fold changes the number of multipliers outside the unit circle by one: a branch that moves away from the range
-is followed only if it has one, and may come back stable.
+is followed only if it may have one such multiplier, because it can then come back stable.
 """
 
 from collections.abc import Iterator
@@ -59,7 +59,8 @@ class RegionBeyondRange:
         self.range_limits = replace(self.range_limits, hopfs_beyond_range=self.region_limits.hopfs)
 
     def set_work_limit(self) -> None:
-        """Sets the limit of the work in the region, after the branches within the range are followed."""
+        """Sets `remaining_work`, the limit of the work in the region; called after the branches within the
+        range are followed."""
         settings = BEYOND_RANGE_SETTINGS
         work_limit = settings.work_limit_per_work_within_range * self.region_limits.workspace.work
         self.remaining_work = max(work_limit, MULTIPLICATIONS_PER_WORK_UNIT * settings.min_work_limit)
@@ -70,7 +71,8 @@ class RegionBeyondRange:
         return self.region_limits.coordinate_range[1 - self.range_end_index]
 
     def shorten_followed_part(self, coordinate: float) -> None:
-        """Moves `end_of_followed_part` to `coordinate` if this is closer to the range, not into the range."""
+        """Moves `end_of_followed_part` to `coordinate` if this is closer to the range; at most to the end of
+        the range."""
         nearer, farther = (min, max) if self.range_end_index == 1 else (max, min)
         end = nearer(self.end_of_followed_part, coordinate)
         self.end_of_followed_part = farther(self.range_end_coordinate, end)
@@ -123,13 +125,15 @@ class RegionBeyondRange:
             with solve_part(f"branch from the symmetry breaking at {place}"), self._within_remaining_work():
                 limits = replace(self.region_limits, breakings=self.breakings)
                 index = self.breakings.index(breaking)
-                curve = follow_asymmetric_branch(index, self.path.name, limits)
+                curve = follow_asymmetric_branch(index, self.path.parameter_name, limits)
                 entry = self._range_entry_of(curve)
             if entry is not None:
                 yield entry
 
     def _range_entry_from_hopf_point(self, index: int, hopf: HopfBranchStart) -> RangeEndPassage | None:
-        """The place where the branch from the Hopf point `hopf`, of the index `index`, enters the range."""
+        """The place where the branch from the Hopf point `hopf`, with the index `index`, enters the range;
+        None if the branch does not enter it, or if it moves away from the range and cannot come back
+        stable."""
         accuracy = accuracy_near_hopf_points([hopf], self.region_limits.accuracy)
         moves_away = hopf.parameter_direction == (-1 if self.range_end_index == 0 else 1)
         # The straight rod loses stability by pairs: without the multiplier that is 1 at the Hopf point, which
@@ -159,7 +163,8 @@ class RegionBeyondRange:
     def _follow_to_range_entry(
         self, curve: BranchCurve, first_cycle: BranchCycle, accuracy: float
     ) -> RangeEndPassage | None:
-        """The place where the branch `curve`, followed from its first cycle, enters the range, or None."""
+        """The place where the branch `curve`, followed from its first cycle `first_cycle`, enters the range,
+        or None."""
         limits = replace(self.region_limits, accuracy=accuracy, breakings=self.breakings)
         return self._range_entry_of(follow_from_cycle(curve, first_cycle, limits))
 
@@ -170,7 +175,7 @@ class RegionBeyondRange:
             self._hopf_indices_of_branch_ends.add(curve.end_hopf_index)
         if curve.end_breaking is not None:
             self._followed_breakings.append(curve.end_breaking)
-        if not curve.is_complete or not curve.points:
+        if not curve.is_complete or not curve.stored_cycles:
             # The part of the branch that is not followed begins at its last cycle.
             self.shorten_followed_part(self.path.coordinate(curve.special_points[-1].parameter_value))
             return None
@@ -194,7 +199,7 @@ class RegionBeyondRange:
         try:
             with workspace.further_work_limit(self.remaining_work):
                 curve = complete_branch_through(
-                    start, self.path.name, self.region_limits, self._is_branch_known
+                    start, self.path.parameter_name, self.region_limits, self._is_branch_known
                 )
         finally:
             self.remaining_work -= workspace.work - initial_work
@@ -207,7 +212,7 @@ class RegionBeyondRange:
         return [entry for entry in entries if entry is not None]
 
     def _is_branch_known(self, curve: BranchCurve) -> bool:
-        """Whether a branch has a fold of a branch that was followed before in the region."""
+        """Whether the branch `curve` has a fold of a branch that was followed before in the region."""
         return any(lies_on_a_branch(fold, [curve]) for fold in self.folds)
 
     def contains_special_point(self, start: SpecialPoint) -> bool:
@@ -216,9 +221,10 @@ class RegionBeyondRange:
         return low < self.path.coordinate(start.parameter_value) < high
 
     def _record_branch(self, curve: BranchCurve) -> None:
-        """Counts the cycles of a branch of the region, and records its folds and symmetry breakings."""
+        """Counts the cycles of the branch `curve` of the region, and records its folds and symmetry
+        breakings."""
         limits = self.region_limits
-        self.region_limits = replace(limits, max_cycles=limits.max_cycles - len(curve.points))
+        self.region_limits = replace(limits, max_cycles=limits.max_cycles - len(curve.stored_cycles))
         # The last special point of a closed branch is its first one, located again.
         special_points = curve.special_points[: -1 if curve.is_closed else None]
         points = [point for point in special_points if not point.message]

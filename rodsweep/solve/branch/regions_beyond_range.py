@@ -17,8 +17,8 @@ from .status import BranchEndReason
 
 
 def regions_beyond_range(path: ParameterPath, limits: BranchLimits, margin: float) -> list[RegionBeyondRange]:
-    """The regions beyond the ends of the range of `limits`. margin: smallest relative distance from the
-    crushing force."""
+    """The regions beyond the ends of the range of `limits`, along `path`. margin: smallest relative distance
+    from the crushing force."""
     regions = (_region_beyond_range_end(path, index, limits, margin) for index in (0, 1))
     return [region for region in regions if region is not None]
 
@@ -26,20 +26,20 @@ def regions_beyond_range(path: ParameterPath, limits: BranchLimits, margin: floa
 def _region_beyond_range_end(
     path: ParameterPath, index: int, limits: BranchLimits, margin: float
 ) -> RegionBeyondRange | None:
-    """The region beyond the end `index` of the range, within the allowed values of the parameter; None at a
-    crushed rod and at a coordinate of 0 or less. margin: smallest relative distance from the crushing
-    force."""
+    """The region beyond the end `index` of the range of `limits`, within the allowed values of the parameter;
+    None at a crushed rod and at a coordinate of 0 or less. margin: smallest relative distance from the
+    crushing force."""
     end = limits.coordinate_range[index]
     if end <= 0 or limits.end_reasons[index] is BranchEndReason.crushed:
         return None
-    far_end = _far_end_of_region(end, index, path.name)
+    far_end = _far_end_of_region(end, index, path.parameter_name)
     low, high = sorted(map(path.parameter.value, (end, far_end)))
     bounds = path.parameter.allowed_range.schema_bounds
     low = max(bounds.get("minimum", low), low)
     high = min(bounds.get("maximum", high), high)
     # The path moves one parameter; the two others of the crushing load keep the values of the rod.
     base_values = {"F": path.rod.F, "k1": path.rod.k1, "taper": path.rod.taper}
-    low, high = uncrushed_interval(path.rod.material, base_values, (path.name, low, high), margin)
+    low, high = uncrushed_interval(path.rod.material, base_values, (path.parameter_name, low, high), margin)
     # Along a compliance the larger value has the smaller coordinate, so coordinates are compared.
     farther = min if index == 0 else max
     far_end = farther(path.coordinate(low), path.coordinate(high))
@@ -56,18 +56,19 @@ def _region_beyond_range_end(
         max_cycles=BEYOND_RANGE_SETTINGS.max_cycles,
         locates_special_points=False,
     )
-    hopfs, lost_at = _hopf_points_in_region(path, index, region_limits)
+    hopfs, lost_at = _hopf_points_and_search_ends(path, index, region_limits)
     region = RegionBeyondRange(path, index, limits, replace(region_limits, hopfs=hopfs))
     for coordinate in lost_at:
         region.shorten_followed_part(coordinate)
     return region
 
 
-def _hopf_points_in_region(
+def _hopf_points_and_search_ends(
     path: ParameterPath, index: int, limits: BranchLimits
 ) -> tuple[list[HopfBranchStart], list[float]]:
     """Returns (Hopf points in the region of `limits`, coordinates beyond which Hopf points may be missing).
-    index: as in `RegionBeyondRange`; the Hopf points within the range are `limits.hopfs_beyond_range`."""
+    index: `RegionBeyondRange.range_end_index`. limits: limits of the region, in which `hopfs_beyond_range`
+    are the Hopf points within the range."""
     low, high = sorted(map(path.parameter.value, limits.coordinate_range))
     try:
         search = find_imaginary_axis_crossings(path, low, high, certify=False)
@@ -75,7 +76,7 @@ def _hopf_points_in_region(
         # Hopf points may be missing everywhere, so nothing beyond the end of the range counts as searched.
         return [], [limits.coordinate_range[1 - index]]
     hopfs = []
-    lost_at = _ends_of_hopf_search(path, index, limits, search)
+    lost_at = _ends_of_complete_hopf_search(path, index, limits, search)
     for crossing in search.thresholds:
         others = (hopf.crossing for hopf in limits.hopfs_beyond_range)
         # A Hopf point at the end of the range is found by both searches, and belongs to the range.
@@ -90,34 +91,34 @@ def _hopf_points_in_region(
     return hopfs, lost_at
 
 
-def _ends_of_hopf_search(
+def _ends_of_complete_hopf_search(
     path: ParameterPath, index: int, limits: BranchLimits, search: ThresholdSearchResult
 ) -> list[float]:
-    """Coordinates beyond which the result `search` may lack Hopf points; other arguments as in
-    `_hopf_points_in_region`."""
+    """Coordinates beyond which the result `search` may lack Hopf points. path, index, limits: as in
+    `_hopf_points_and_search_ends`."""
     ends = []
     if search.ended_early:
         # The search begins at the smallest coordinate.
         end = max(map(path.coordinate, search.searched_interval))
         # Below the range the missing part is the one next to the range, so nothing there counts as searched.
         ends.append(end if index == 1 else limits.coordinate_range[1])
-    if not isnan(search.open_range[0]):
-        unsearched = [path.coordinate(value) for value in search.open_range]
+    if not isnan(search.range_of_further_crossings[0]):
+        unsearched = [path.coordinate(value) for value in search.range_of_further_crossings]
         ends.append(min(unsearched) if index == 1 else max(unsearched))
     return ends
 
 
 def _far_end_of_region(end: float, index: int, name: str) -> float:
-    """Coordinate of the parameter `name` at the far end of the region beyond the end `end` of a range, which
-    is not negative. index: 0 below the range, 1 above."""
-    factor = 1 + BEYOND_RANGE_SETTINGS.relative_extent
+    """Coordinate of the parameter `name` at the far end of the region beyond an end of a range. end:
+    coordinate of this end, not negative. index: 0 below the range, 1 above."""
+    factor = 1 + BEYOND_RANGE_SETTINGS.extent_over_largest_coordinate
     # Along the force the region ends at 0, from below which no cycle comes.
     return end * factor if index == 1 else end / factor * (name != "F")
 
 
 def extended_range(name: str, low: float, high: float) -> tuple[float, float]:
-    """Smallest and largest value of the parameter `name` up to which branches are followed beyond the range
-    from `low` to `high`; crushed rods are not considered."""
+    """Smallest and largest value of the parameter `name` up to which branches are followed beyond
+    the range from `low` to `high`; crushed rods are not considered."""
     parameter = PARAMETERS[name]
     ends = sorted(float(parameter.coordinate(value)) for value in (low, high))
     # An end at 0 or below has no region beyond it, as in `_region_beyond_range_end`.

@@ -17,7 +17,7 @@ class BranchStartSettings:
     """Upper limit of the amplitude of the first cycle on a branch between two Hopf points close together,
     divided by the largest amplitude on this branch: the parameter then changes by a fifteenth of the distance
     between both points."""
-    last_amplitude_per_half_axis: float = 0.2
+    last_cycle_amplitude_per_half_axis: float = 0.2
     """Near two Hopf points close together, the last cycle of a branch is moved towards its Hopf point, down
     to this fraction of half the axis of the ellipse or hyperbola of the cycles: at this amplitude the
     parabola of one Hopf point alone misses the parameter by 4 % of the distance from the Hopf point."""
@@ -39,7 +39,7 @@ class BranchStartSettings:
     """Largest relative accuracy of the cycles of a rod with a Hopf point of |a| =
     `max_nondegenerate_amplitude_coefficient`. For larger |a| the largest accuracy is proportional to 1/a^2,
     like the distance of the fold from the Hopf point."""
-    min_accuracy_if_degenerate: float = 1e-8
+    finest_accuracy_if_degenerate: float = 1e-8
     """Lower limit of the accuracy that is required because of a large |a|. With this limit, for ten rods at
     distances of 1e-7 to 1e-3 from a generalised Hopf point, no false fold was found, and all folds farther
     than 1e-11 F from the Hopf point were found."""
@@ -62,8 +62,8 @@ class BranchErrorSettings:
     max_tip_y_sensitivity: float = 120.0
     """Limit of the sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p. At larger
     sensitivities, as near a Hopf point or a fold, the allowed errors at equal p are larger than the accuracy
-    by the factor sensitivity/limit. A fifth above the documented limit, because a user estimates the
-    sensitivity from cycles."""
+    by the factor sensitivity/limit. This number is a fifth above the documented limit, because a user
+    estimates the sensitivity from cycles."""
     min_deflection_per_parameter_change: float = 0.1
     """Lower limit of |d(deflection)/ds| in the parameter error at equal deflection, divided by
     |d(parameter)/ds|, s: arc length. Without this limit the error would be infinite where the deflection is
@@ -74,18 +74,20 @@ class BranchErrorSettings:
     """Lower limit of an error before its logarithm is taken; smaller errors are rounding errors."""
     max_error_ratio_for_interpolation: float = 30.0
     """Largest ratio of two measured errors between which errors are interpolated. If the ratio is larger, the
-    smaller error is small only because errors change their sign near its cycle, and is replaced."""
+    smaller error is small only because errors change their sign near its cycle, and is raised to the larger
+    error divided by this ratio."""
     newton_tolerance_per_accuracy: float = 1e-4
     """Tolerance of Newton's method for a cycle of a branch, also on the two finer meshes of an error
-    measurement, divided by the accuracy. Near a fold or a Hopf point this tolerance over the derivative of
-    the parameter is an error at equal parameter, and with 0.01 measured errors were mostly of this kind."""
+    measurement, divided by the accuracy. Near a fold or a Hopf point this tolerance, divided by the
+    derivative of the parameter with respect to arc length, is an error at equal parameter. With a ratio of
+    0.01, measured errors were mostly of this kind."""
     min_newton_tolerance: float = 1e-11
-    """Lower limit of this tolerance, unless a single cycle of the same accuracy has a smaller one: cycles of
-    strongly unstable branches have larger rounding errors."""
+    """Lower limit of the tolerance of Newton's method, unless a single cycle of the same accuracy has a
+    smaller tolerance: cycles of strongly unstable branches have larger rounding errors."""
     min_slope_for_equal_parameter_near_zero: float = 0.1
     """Close to the parameter coordinate 0, cycles on finer meshes are solved at an equal parameter, not at an
     equal arc length, if the modulus of the derivative of the scaled parameter coordinate with respect to arc
-    length exceeds this number, far from a fold."""
+    length exceeds this number, as it does far from a fold."""
     sensitivity_arc_length: float = 1e-4
     """Arc length of the difference quotient for the sensitivity of the largest tip y."""
 
@@ -106,24 +108,25 @@ class BranchMeshSettings:
     """Error for which a mesh is chosen, divided by the accuracy; below 1, so that the mesh suffices for the
     next cycles too."""
     planned_error_per_accuracy_if_cheaper: float = 0.25
-    """The same number for a cheaper mesh that replaces a sufficient one: a mesh that turns out not to suffice
-    costs several solutions."""
+    """Error, divided by the accuracy, for which a cheaper mesh is chosen that replaces a sufficient mesh: a
+    mesh that turns out not to suffice costs several solutions."""
     min_slope_ratio_for_interpolation: float = 0.2
     """Errors are interpolated at a cycle only if |d(parameter)/ds|, s: arc length, is at least this number
     times the smaller of the two values at the measured cycles. Near a fold the derivative tends to 0, and
-    errors measured far from the fold are no bound."""
+    errors measured far from the fold are not a bound."""
     max_uncorrected_tail_growth: float = 2.0
-    """Interpolated errors are multiplied by the growth that the coefficient tails predict, if it exceeds this
-    factor since each of the two measured cycles; beyond `max_error_growth_since_measurement` they are
-    measured."""
+    """Interpolated errors are multiplied by the growth that the coefficient tails predict if this growth
+    exceeds this factor since each of the two measured cycles. If the growth exceeds
+    `max_error_growth_since_measurement`, the errors are measured."""
     max_steps_between_measurements: int = 3
     """Maximum number of steps between two cycles with measured errors."""
     max_unmeasured_steps_if_errors_small: int = 4
-    """The same number if the last measured errors are so small that they stay within the accuracy when they
-    grow by `max_error_growth_since_measurement`. With 6 or 8 steps errors that change their sign between two
-    measured cycles exceeded their estimates, by up to 4 times."""
+    """Maximum number of steps between two cycles with measured errors if the last measured errors are so
+    small that they stay within the accuracy when they grow by `max_error_growth_since_measurement`. With 6 or
+    8 steps errors that change their sign between two measured cycles exceeded their estimates, by up to 4
+    times."""
     max_planned_error_growth: float = 4.0
-    """Largest expected growth of the errors up to the next measured cycle for which a finer mesh is
+    """Upper limit of the expected growth of the errors up to the next measured cycle, by which a mesh is
     chosen."""
     max_error_growth_since_measurement: float = 4.0
     """Errors are measured again if the coefficient tails predict that the errors have grown by more than this
@@ -141,7 +144,7 @@ class BranchEndSettings:
     max_amplitude_before_extrapolation: float = 0.06
     """The Hopf point at the end of a branch is extrapolated only from a cycle whose largest tip y, in L, is
     at most this number; otherwise the step is shortened."""
-    max_last_asymmetry_per_moment: float = 0.2
+    max_asymmetry_before_extrapolation: float = 0.2
     """The symmetric cycle at the end of a branch is extrapolated only from a cycle whose asymmetry, divided
     by its largest bending moment, is at most this number; otherwise the step is shortened."""
     min_asymmetry_per_moment: float = 0.02
@@ -166,9 +169,9 @@ class BranchEndSettings:
     """Tolerance of the predicted arc length to the end of the parameter range, divided by the step. Newton's
     method then solves the cycle exactly at this end."""
     normal_form_safety_factor: float = 2.0
-    """Safety factor on the measured errors of the normal form of a Hopf point, and on the effect of higher
-    powers of the distance from this point on them. The measured errors are close to the true ones: without
-    the factor on them, the errors of 84 cycles of random rods at ends of ranges reached 0.997 times their
+    """Safety factor on the effect of higher powers of the distance from a Hopf point on the deviations of its
+    normal form. The errors of the cycles that give the deviations have no factor: they are close to the true
+    errors, and the errors of 84 cycles of random rods at ends of ranges reached 0.997 times their
     estimates."""
     relative_parameter_error_at_range_end: float = 1e-15
     """Relative error of the parameter at an end of the range."""
@@ -187,7 +190,7 @@ BRANCH_END_SETTINGS = BranchEndSettings()
 class BeyondRangeSettings:
     """Settings for the continuation of branches beyond the range."""
 
-    relative_extent: float = 0.5
+    extent_over_largest_coordinate: float = 0.5
     """Branches are followed up to (1 + this number) times the largest coordinate of the range and down to its
     smallest coordinate divided by (1 + this number); along F down to 0, because there is no cycle without
     force."""
@@ -197,7 +200,8 @@ class BeyondRangeSettings:
     """Limit of the work beyond one end of the range, divided by the work on the branches within the range."""
     min_work_limit: float = 100.0
     """Smallest limit of the work beyond one end of the range, in `MULTIPLICATIONS_PER_WORK_UNIT`: some
-    seconds, ten times the work on a usual branch. A range without a Hopf point has no branches of its own."""
+    seconds, ten times the work on a usual branch. It applies to a range without a Hopf point, which has no
+    branches of its own."""
     min_asymmetric_work_limit: float = 400.0
     """Smallest limit of the work on the branches of asymmetric cycles beyond one end of the range, in
     `MULTIPLICATIONS_PER_WORK_UNIT`: their cycles are solved over the whole period, more accurately beside a

@@ -64,7 +64,7 @@ class BranchStatus(PointStatus):
     )
 
 
-def _status_as_in_thresholds(status: ThresholdStatus) -> tuple[int, str, bool]:
+def _values_of_threshold_status(status: ThresholdStatus) -> tuple[int, str, bool]:
     """Returns (value, sentence, success) of a `ThresholdStatus`, from which the `CoexistenceStatus` of the
     same name is made."""
     return int(status), status.sentence, status.succeeded
@@ -74,13 +74,13 @@ class CoexistenceStatus(PointStatus):
     """Outcome of a row with cycles: the status of the search for thresholds of the straight rod if this
     search has a problem, otherwise the status of the branches."""
 
-    ok = _status_as_in_thresholds(ThresholdStatus.ok)
-    not_certified = _status_as_in_thresholds(ThresholdStatus.not_certified)
-    window_open = _status_as_in_thresholds(ThresholdStatus.window_open)
-    accuracy_not_reached = _status_as_in_thresholds(ThresholdStatus.accuracy_not_reached)
-    list_full = _status_as_in_thresholds(ThresholdStatus.list_full)
-    failed = _status_as_in_thresholds(ThresholdStatus.failed)
-    ended_early = _status_as_in_thresholds(ThresholdStatus.ended_early)
+    ok = _values_of_threshold_status(ThresholdStatus.ok)
+    not_certified = _values_of_threshold_status(ThresholdStatus.not_certified)
+    window_open = _values_of_threshold_status(ThresholdStatus.window_open)
+    accuracy_not_reached = _values_of_threshold_status(ThresholdStatus.accuracy_not_reached)
+    list_full = _values_of_threshold_status(ThresholdStatus.list_full)
+    failed = _values_of_threshold_status(ThresholdStatus.failed)
+    ended_early = _values_of_threshold_status(ThresholdStatus.ended_early)
     branches_stopped = (
         6,
         "the thresholds of the straight rod are found, but a branch of cycles is incomplete or a Hopf point "

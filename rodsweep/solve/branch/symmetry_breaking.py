@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Array
-from ..orbit.orbit import Orbit, node_times
+from ..orbit.orbit import Orbit, node_time_fractions
 from ..orbit.symmetry import NO_SYMMETRY
 from ..unsolvable import Unsolvable
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, arc_length_between
@@ -50,7 +50,7 @@ def extended_to_whole_period(orbit: Orbit) -> Orbit:
     interval_count = 2 * orbit.interval_count
     grading = orbit.grading.over_two_solved_parts
     # In units of half a period, which the symmetric orbit covers.
-    times = 2 * node_times(interval_count, orbit.stage_count, grading)
+    times = 2 * node_time_fractions(interval_count, orbit.stage_count, grading)
     is_second_half = times > 1
     points = orbit.states_at_time_fractions(np.where(is_second_half, times - 1, times))
     # The second half of the period is the mirror image of the first.
@@ -76,9 +76,10 @@ def _bending_moments(states: Array, orbit: Orbit) -> Array:
 def reaches_symmetric_cycle(
     start: BranchCycle, end: BranchCycle, breakings: Sequence[SymmetryBreaking], accuracy: float
 ) -> bool:
-    """Whether an asymmetric branch reaches or passes a symmetric cycle between two cycles: the asymmetry
-    changes sign or almost vanishes; or the parameter turns back near a symmetry breaking in `breakings`,
-    because a mesh without the symmetry of the cycle perturbs the crossing of the branches."""
+    """Whether an asymmetric branch reaches or passes a symmetric cycle between the cycles `start` and `end`:
+    the asymmetry changes sign or almost vanishes; or the parameter turns back near a symmetry breaking in
+    `breakings`, because a mesh without the symmetry of the cycle perturbs the crossing of the branches.
+    accuracy: relative accuracy of the branch."""
     start_asymmetry = bending_moment_asymmetry(start.orbit)
     # The scalar product needs both asymmetries at the same nodes.
     orbit_on_mesh = end.orbit.on_mesh(start.orbit.form.mesh, end.orbit.interval_count, end.orbit.stage_count)
@@ -94,7 +95,7 @@ def reaches_symmetric_cycle(
 
 
 def _asymmetry_per_bending_moment(start: BranchCycle) -> float:
-    """Largest nodal asymmetry of a cycle, divided by its largest bending moment."""
+    """Largest nodal asymmetry of the cycle `start`, divided by its largest bending moment."""
     orbit = start.orbit
     return float(
         np.abs(bending_moment_asymmetry(orbit)).max()
@@ -103,15 +104,16 @@ def _asymmetry_per_bending_moment(start: BranchCycle) -> float:
 
 
 def _is_nearly_symmetric(start: BranchCycle) -> bool:
-    return _asymmetry_per_bending_moment(start) <= BRANCH_END_SETTINGS.max_last_asymmetry_per_moment
+    return _asymmetry_per_bending_moment(start) <= BRANCH_END_SETTINGS.max_asymmetry_before_extrapolation
 
 
 def symmetry_breaking_index_between(
     start: BranchCycle, end: BranchCycle, breakings: Sequence[SymmetryBreaking], accuracy: float
 ) -> int | None:
-    """Index of the symmetry breaking in `breakings` between two cycles of an asymmetric branch; -1 if
-    `breakings` does not contain this symmetry breaking; None if `start` is so asymmetric that a shorter step
-    is needed. Raises Unsolvable if no shorter step is allowed."""
+    """Index of the symmetry breaking in `breakings` between the cycles `start` and `end` of an asymmetric
+    branch; -1 if `breakings` does not contain this symmetry breaking; None if `start` is so asymmetric that a
+    shorter step is needed. Raises Unsolvable if no shorter step is allowed. accuracy: relative accuracy of
+    the branch."""
     index = _symmetry_breaking_index_ahead(start, breakings, accuracy) if _is_nearly_symmetric(start) else -1
     if index >= 0 or _asymmetry_per_bending_moment(start) <= BRANCH_END_SETTINGS.min_asymmetry_per_moment:
         return index
@@ -127,8 +129,9 @@ def ends_within_extrapolation_tolerances(
 ) -> bool:
     """Whether a branch ends at a Hopf point or a symmetry breaking, within tolerances.
 
-    Each point is (parameter coordinate, period): extrapolated along the branch from its last cycle, of this
-    cycle, and at the end. accuracy: relative accuracy of the branch.
+    extrapolated, last, end: (parameter coordinate, period) as extrapolated along the branch from its last
+    cycle, at this cycle, and at the Hopf point or symmetry breaking. accuracy: relative accuracy of the
+    branch.
     """
     settings = BRANCH_END_SETTINGS
     # The extrapolation is exact at the end, where only the errors of the last cycle and of the end remain.
@@ -144,8 +147,9 @@ def ends_within_extrapolation_tolerances(
 def _symmetry_breaking_index_ahead(
     start: BranchCycle, breakings: Sequence[SymmetryBreaking], accuracy: float
 ) -> int:
-    """Index of the first symmetry breaking in `breakings` with the parameter and period, within tolerances,
-    at which the extrapolated asymmetry vanishes; -1 if no entry fits or the asymmetry does not decrease."""
+    """Index of the first symmetry breaking in `breakings` whose parameter and period agree, within
+    tolerances, with the parameter and period at which the asymmetry, extrapolated from `start`, vanishes; -1
+    if none agrees or the asymmetry does not decrease. accuracy: relative accuracy of the branch."""
     orbit = start.orbit
     current_asymmetry = bending_moment_asymmetry(orbit)
     # The asymmetry is linear in the states, so that of the tangent is its derivative.

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from .path_problem import PathProblem
+from .path_problem import PathEigenproblem
 from .spectrum_samples import SpectrumSample
 
 
@@ -18,7 +18,7 @@ class ExchangeNewtonSettings:
     """Number of steps in which an eigenvalue is followed from a sample to the middle of the interval."""
     converged_step_in_errors: float = 4.0
     """Newton's method for an overtaking stops when the step is smaller than this multiple of the error."""
-    relative_rounding_error: float = 4e-16
+    relative_rounding_of_path_variable: float = 4e-16
     """Relative rounding error of the path variable: two units in the last place."""
     max_relative_eigenvalue_error: float = 1e-6
     """No overtaking is found from eigenvalues w whose error exceeds this multiple of |w|: Newton's method has
@@ -40,12 +40,12 @@ class LeaderExchange(NamedTuple):
 
 
 def double_eigenvalue_between(
-    problem: PathProblem, pair: SpectrumSample, real: SpectrumSample
+    problem: PathEigenproblem, pair: SpectrumSample, real: SpectrumSample
 ) -> LeaderExchange | None:
     """The double eigenvalue between a sample `pair` with a leading pair and a sample `real`
     with two real leading eigenvalues; None if Newton's method does not find it."""
-    pair_difference = pair.scaled_squared_eigenvalue_difference()
-    real_difference = real.scaled_squared_eigenvalue_difference()
+    pair_difference = pair.scaled_squared_difference_and_slope()
+    real_difference = real.scaled_squared_difference_and_slope()
     sample_distance = abs(pair.p - real.p)
     if pair_difference is None or real_difference is None:
         return None
@@ -58,10 +58,11 @@ def double_eigenvalue_between(
 
 
 def overtaking_between(
-    problem: PathProblem, pair: SpectrumSample, real: SpectrumSample
+    problem: PathEigenproblem, pair: SpectrumSample, real: SpectrumSample
 ) -> LeaderExchange | None:
     """The point between two samples where a real eigenvalue and a pair have equal real parts, by Newton's
-    method; None if Newton's method does not find it."""
+    method; None if Newton's method does not find it. pair: sample at which a pair leads. real: sample at
+    which a real eigenvalue leads."""
     if all(w.imag != 0 for w in pair.w) or all(w.imag == 0 for w in real.w):
         return None  # no eigenvalue of the other kind is known
     p = (pair.p + real.p) / 2
@@ -83,7 +84,7 @@ def overtaking_between(
         step = -(w_real.real - w_pair.real) / slope
         error = (error_real + error_pair) / abs(
             slope
-        ) + EXCHANGE_NEWTON_SETTINGS.relative_rounding_error * abs(p)
+        ) + EXCHANGE_NEWTON_SETTINGS.relative_rounding_of_path_variable * abs(p)
         p += step
         if not ends[0] <= p <= ends[1]:
             return None
@@ -96,7 +97,7 @@ def overtaking_between(
     return None
 
 
-def _follow_eigenvalue(problem: PathProblem, w: complex, start: float, stop: float) -> complex:
+def _follow_eigenvalue(problem: PathEigenproblem, w: complex, start: float, stop: float) -> complex:
     """The eigenvalue at p = `stop` that continues w at p = `start`, by small steps of Newton's method."""
     p = start
     for i in range(1, EXCHANGE_NEWTON_SETTINGS.following_step_count + 1):

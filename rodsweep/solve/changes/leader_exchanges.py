@@ -20,7 +20,7 @@ from ..spectrum.search import SpectrumRequest
 from ..spectrum.status import SpectrumStatus
 from ..unsolvable import Unsolvable
 from .exchange_newton import double_eigenvalue_between, overtaking_between
-from .path_problem import PathProblem
+from .path_problem import PathEigenproblem
 from .sample_interpolation import (
     excludes_exchange,
     has_only_double_eigenvalue,
@@ -55,21 +55,21 @@ class LeaderExchangeSettings:
     """Where further exchanges may lie between two samples, samples are added on both sides of the exchange
     found, at this fraction of the interval."""
     min_interval_fraction_with_two_exchanges: float = 1e-9
-    """Like `min_interval_fraction`, if the interpolation does not exclude two exchanges between the
-    samples."""
+    """This number replaces `min_interval_fraction` if the interpolation does not exclude two exchanges
+    between the samples."""
     min_subinterval_fraction: float = 0.05
     """An added sample divides its interval into parts that are at least this fraction of the interval: a
     minimum of the interpolant may coincide with a sample."""
     max_newton_displacement_in_errors: float = 10.0
-    """The eigenvalue found by Newton's method is rejected as a different eigenvalue if its distance from the
-    start exceeds this multiple of the start's error estimate and `max_relative_newton_displacement` times
-    |w|."""
+    """The eigenvalue w found by Newton's method is rejected as a different eigenvalue if its distance from
+    the start exceeds both this multiple of the start's error estimate and `max_relative_newton_displacement`
+    times |w|, or if the start of another eigenvalue is nearer."""
     max_relative_newton_displacement: float = 1e-12
-    """The eigenvalue w found by Newton's method is accepted if its distance from the start is below this
+    """The eigenvalue w found by Newton's method is not rejected for a distance from the start of at most this
     multiple of |w|: some thousand rounding errors."""
     min_relative_interval_length: float = 1e-12
     """The search fails at an interval whose length, divided by the larger modulus of its ends, is at most
-    this (some thousand rounding errors), if its exchange is not found."""
+    this number (some thousand rounding errors), if its exchange is not found."""
 
 
 LEADER_EXCHANGE_SETTINGS = LeaderExchangeSettings()
@@ -78,7 +78,7 @@ LEADER_EXCHANGE_SETTINGS = LeaderExchangeSettings()
 class LeaderExchangeSearch:
     """Finds the exchanges of the leading eigenvalue along a path. samples: the solved samples, by p."""
 
-    def __init__(self, problem: PathProblem, certify: bool):
+    def __init__(self, problem: PathEigenproblem, certify: bool):
         self.problem = problem
         self.path = problem.path
         self.certify = certify
@@ -127,7 +127,7 @@ class LeaderExchangeSearch:
             try:
                 exchanges += self._search_interval(a, b, intervals)
             except Unsolvable as reason:
-                intervals.retry_left_half_only((a, b), str(reason))
+                intervals.limit_search_to_left_half((a, b), str(reason))
         return exchanges, intervals.end
 
     def _search_interval(self, a: float, b: float, intervals: IntervalQueue) -> list[Threshold]:
@@ -171,9 +171,10 @@ class LeaderExchangeSearch:
     def _exchange_if_alone(
         self, exchange: Threshold, left: SpectrumSample, right: SpectrumSample, intervals: IntervalQueue
     ) -> list[Threshold]:
-        """The exchange `exchange` between two samples, in a list, if no further exchange lies between them;
-        otherwise an empty list, and the interval is divided on both sides of the exchange. If the interval is
-        too short, the exchange is returned, and the list counts as not proved."""
+        """The exchange `exchange` between the samples `left` and `right`, in a list, if no further exchange
+        lies between them; otherwise an empty list, and the interval is divided on both sides of the exchange,
+        into entries of `intervals`. If the interval is too short, the exchange is returned, and the list
+        counts as not proved."""
         excludes_others = has_only_double_eigenvalue if exchange.frequency == 0 else has_only_leader_exchange
         if excludes_others(left, right):
             return [exchange]
@@ -188,8 +189,9 @@ class LeaderExchangeSearch:
         return []
 
     def _exchange_between(self, left: SpectrumSample, right: SpectrumSample) -> Threshold | None:
-        """The exchange between a sample with a leading pair and a sample with a real leading eigenvalue.
-        None if Newton's method finds no exchange, or if a count shows that other eigenvalues lead there."""
+        """The exchange between the samples `left` and `right`, of which one has a leading pair and one a real
+        leading eigenvalue. None if Newton's method finds no exchange, or if a count shows that other
+        eigenvalues lead there."""
         pair_sample, real_sample = (left, right) if left.oscillates else (right, left)
         # Kinds are named in the direction of the parameter, along a stiffness the direction of falling p.
         if right.oscillates != self.path.is_compliance_path:

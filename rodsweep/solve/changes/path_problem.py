@@ -2,14 +2,18 @@
 
 from abc import ABC, abstractmethod
 
-from ...determinant.certificate.first_crossing_boxes import path_intervals
+from ...determinant.certificate.first_crossing_boxes import path_intervals_of_bounded_change
 from ...determinant.certificate.winding_number import EigenvalueCount, count_right_of
 from ...determinant.parameter_path import ParameterPath, coefficients_at
-from ...determinant.roots.newton import LocatedEigenvalue, double_eigenvalue_by_newton, eigenvalue_by_newton
+from ...determinant.roots.newton import (
+    LocatedEigenvalue,
+    double_eigenvalue_by_newton,
+    eigenvalue_with_slope_and_error,
+)
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 
 
-class PathProblem(ABC):
+class PathEigenproblem(ABC):
     """Eigenvalues of the straight rods along a path, as functions of the path variable p."""
 
     def __init__(self, path: ParameterPath):
@@ -55,15 +59,15 @@ class PathProblem(ABC):
         return 1.0, 0.0
 
 
-class UniformPath(PathProblem):
+class UniformPath(PathEigenproblem):
     """Eigenvalue problem along a path of uniform rods of linear material, whose D has a closed form."""
 
     def interval_edges(self, low: float, high: float) -> list[float]:
-        return [a for a, _ in path_intervals(self.path, low, high)] + [high]
+        return [a for a, _ in path_intervals_of_bounded_change(self.path, low, high)] + [high]
 
     def eigenvalue_with_slope_and_error(self, guess: complex, p: float) -> tuple[complex, complex, float]:
         coefficients = coefficients_at(p, self.path.origin, self.path.direction)
-        return eigenvalue_by_newton(guess, coefficients, self.path.direction)
+        return eigenvalue_with_slope_and_error(guess, coefficients, self.path.direction)
 
     def double_eigenvalue(self, x: float, p: float, expected_distance: float) -> LocatedEigenvalue:
         return double_eigenvalue_by_newton(x, p, self.path.origin, self.path.direction, expected_distance)

@@ -34,9 +34,9 @@ def cubic_minimum_and_position(a: float, b: float, slope_a: float, slope_b: floa
     return minimum, argument
 
 
-class NextSample(NamedTuple):
-    """Position of an additional sample between two samples, as a fraction of their interval; 0 if the slopes
-    explain the end values and exclude exchanges of the leading eigenvalue. may_hold_two_exchanges: whether
+class NextSamplePosition(NamedTuple):
+    """Position of an additional sample between two samples. No sample is needed if the slopes explain the
+    values at both samples and exclude exchanges of the leading eigenvalue. may_hold_two_exchanges: whether
     two exchanges may lie between the samples."""
 
     interval_fraction: float
@@ -45,13 +45,13 @@ class NextSample(NamedTuple):
     may_hold_two_exchanges: bool
 
 
-def next_sample_between(left: SpectrumSample, right: SpectrumSample) -> NextSample:
-    """The sample to be added between two samples. The leading eigenvalue must be real at both samples, or a
-    pair at both samples."""
+def next_sample_between(left: SpectrumSample, right: SpectrumSample) -> NextSamplePosition:
+    """The sample to be added between the samples `left` and `right`. The leading eigenvalue must be real at
+    both samples, or a pair at both samples."""
     distance = right.p - left.p
     for a, b in (
-        (left.scaled_squared_eigenvalue_difference(), right.scaled_squared_eigenvalue_difference()),
-        (left.scaled_growth_gap_to_other_type(), right.scaled_growth_gap_to_other_type()),
+        (left.scaled_squared_difference_and_slope(), right.scaled_squared_difference_and_slope()),
+        (left.scaled_other_type_gap_and_slope(), right.scaled_other_type_gap_and_slope()),
     ):
         # Neither sample has such an eigenvalue among the computed ones, so none is near the leading one.
         if a is None and b is None:
@@ -60,7 +60,7 @@ def next_sample_between(left: SpectrumSample, right: SpectrumSample) -> NextSamp
             value, slope = a or b or (0.0, 0.0)
             # Known at one sample only, the gap may close within the interval; 2 is a safety factor.
             if abs(value) < 2 * abs(slope) * distance:
-                return NextSample(0.5, False)
+                return NextSamplePosition(0.5, False)
             continue
         smallest_value = min(abs(a[0]), abs(b[0]))
         # By the trapezoidal rule smooth slopes explain the change between the samples.
@@ -71,18 +71,19 @@ def next_sample_between(left: SpectrumSample, right: SpectrumSample) -> NextSamp
         # Two samples of one kind have gaps of one sign, so the product is 0 only where a sample itself lies
         # at an exchange.
         if a[0] * b[0] <= 0 or minimum < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * smallest_value:
-            return NextSample(fraction, True)
+            return NextSamplePosition(fraction, True)
         if unexplained_change > SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * max(
             smallest_value, abs(b[0] - a[0])
         ):
-            return NextSample(0.5, False)
-    return NextSample(0.0, False)
+            return NextSamplePosition(0.5, False)
+    return NextSamplePosition(0.0, False)
 
 
 def excludes_exchange(left: SpectrumSample, right: SpectrumSample, may_hold_two_exchanges: bool) -> bool:
-    """Whether the slopes at two close samples exclude an exchange of the leading eigenvalue, although
-    `next_sample_between` asks for a sample between them and returns `may_hold_two_exchanges`. The leading
-    eigenvalue must be real at both samples, or a pair at both samples."""
+    """Whether the slopes at two close samples, `left` and `right`, exclude an exchange of the leading
+    eigenvalue, although `next_sample_between` requests a sample between them. may_hold_two_exchanges: as
+    returned by that function. The leading eigenvalue must be real at both samples, or a pair at both
+    samples."""
     return two_pairs_exchange_lead(left, right) or (
         not may_hold_two_exchanges and next_two_stay_below_leader(left, right)
     )
@@ -90,8 +91,8 @@ def excludes_exchange(left: SpectrumSample, right: SpectrumSample, may_hold_two_
 
 def next_two_stay_below_leader(left: SpectrumSample, right: SpectrumSample) -> bool:
     """Whether the slopes exclude that the two eigenvalues after the leading eigenvalue or pair take the lead
-    between two samples, whether these two eigenvalues are real or a complex pair. The leading eigenvalue must
-    be real at both samples, or a pair at both samples."""
+    between the samples `left` and `right`. These two eigenvalues may be real or a complex pair. The leading
+    eigenvalue must be real at both samples, or a pair at both samples."""
     left_gaps = left.scaled_mean_and_product_of_next_gaps()
     right_gaps = right.scaled_mean_and_product_of_next_gaps()
     if left_gaps is None or right_gaps is None:
@@ -108,28 +109,31 @@ def two_pairs_exchange_lead(left: SpectrumSample, right: SpectrumSample) -> bool
         return False
     distance = right.p - left.p
     # The index changes from 0 to 2 because the same pair is first at one sample and second at the other.
-    return _changes_sign_once(left.scaled_growth_gap(0, 2), right.scaled_growth_gap(2, 0), distance) and all(
+    return _changes_sign_once(
+        left.scaled_growth_gap_and_slope(0, 2), right.scaled_growth_gap_and_slope(2, 0), distance
+    ) and all(
         _stays_positive(left.scaled_squared_frequency(i), right.scaled_squared_frequency(2 - i), distance)
         for i in (0, 2)
     )
 
 
 def has_only_double_eigenvalue(left: SpectrumSample, right: SpectrumSample) -> bool:
-    """Whether the slopes exclude further exchanges between two samples with a double eigenvalue between them.
-    The leading eigenvalue is real at one sample, and a pair at the other."""
-    squares = left.scaled_squared_eigenvalue_difference(), right.scaled_squared_eigenvalue_difference()
+    """Whether the slopes exclude further exchanges between the samples `left` and `right`, which have a
+    double eigenvalue between them. The leading eigenvalue is real at one sample, and a pair at the other."""
+    squares = left.scaled_squared_difference_and_slope(), right.scaled_squared_difference_and_slope()
     if squares[0] is None or squares[1] is None:
         return False
     distance = right.p - left.p
     # The mean of the two leading eigenvalues is smooth where they become a pair.
     return _changes_sign_once(squares[0], squares[1], distance) and _stays_positive(
-        left.scaled_growth_gap_of_leading_pair(), right.scaled_growth_gap_of_leading_pair(), distance
+        left.scaled_pair_growth_gap_and_slope(), right.scaled_pair_growth_gap_and_slope(), distance
     )
 
 
 def has_only_leader_exchange(left: SpectrumSample, right: SpectrumSample) -> bool:
-    """Whether the slopes show that, between two samples, a real eigenvalue and a pair exchange the lead once
-    and no other eigenvalue takes the lead. False unless one real eigenvalue and one pair come first."""
+    """Whether the slopes show that, between the samples `left` and `right`, a real eigenvalue and a pair
+    exchange the lead once and no other eigenvalue takes the lead. False unless the first three eigenvalues of
+    both samples are one real eigenvalue and one pair."""
     # Indices of the real eigenvalue and of one eigenvalue of the pair; index 3 is the next eigenvalue.
     indices = [(2, 0) if sample.oscillates else (0, 1) for sample in (left, right)]
     ((real_left, pair_left), (real_right, pair_right)) = indices
@@ -139,13 +143,19 @@ def has_only_leader_exchange(left: SpectrumSample, right: SpectrumSample) -> boo
     distance = right.p - left.p
     return (
         _changes_sign_once(
-            left.scaled_growth_gap(*indices[0]), right.scaled_growth_gap(*indices[1]), distance
+            left.scaled_growth_gap_and_slope(*indices[0]),
+            right.scaled_growth_gap_and_slope(*indices[1]),
+            distance,
         )
         and _stays_positive(
-            left.scaled_growth_gap(real_left, 3), right.scaled_growth_gap(real_right, 3), distance
+            left.scaled_growth_gap_and_slope(real_left, 3),
+            right.scaled_growth_gap_and_slope(real_right, 3),
+            distance,
         )
         and _stays_positive(
-            left.scaled_growth_gap(pair_left, 3), right.scaled_growth_gap(pair_right, 3), distance
+            left.scaled_growth_gap_and_slope(pair_left, 3),
+            right.scaled_growth_gap_and_slope(pair_right, 3),
+            distance,
         )
         and _stays_positive(
             left.scaled_squared_frequency(pair_left), right.scaled_squared_frequency(pair_right), distance
@@ -182,6 +192,6 @@ def _changes_sign_once(left: tuple[float, float], right: tuple[float, float], di
 def deviation_from_trapezoidal_rule(
     left: tuple[float, float], right: tuple[float, float], distance: float
 ) -> float:
-    """Modulus of the change of a quantity between two samples, minus its change by the trapezoidal rule.
-    left, right: (value, slope) at the samples. distance: distance of the samples."""
+    """Modulus of the difference between the change of a quantity from `left` to `right` and its change by the
+    trapezoidal rule. left, right: (value, slope) at the samples. distance: distance of the samples."""
     return abs(right[0] - left[0] - distance * (left[1] + right[1]) / 2)

@@ -89,13 +89,13 @@ class IntervalQueue:
     def stop_at(self, p: float, reason: str) -> None:
         """Ends the search at path variable `p`, up to which it is complete. reason: why the search ends."""
         self._queue.clear()
-        # The end is wanted here, so no half beyond it is tried.
+        # This end is intended, so the search does not continue in a half beyond it.
         self._halvings = SEARCH_RANGE_SETTINGS.max_halvings_after_failure
         self.end = SearchEnd(p, reason)
 
-    def retry_left_half_only(self, interval: tuple[float, float], reason: str) -> None:
-        """Limits the search to parameters below the current `interval`, whose search failed; its left half is
-        still searched. reason: why the search failed."""
+    def limit_search_to_left_half(self, interval: tuple[float, float], reason: str) -> None:
+        """Ends the search at the start of the current `interval`, whose search failed; only its left half is
+        searched next, unless `max_halvings_after_failure` is reached. reason: why the search failed."""
         self._queue.clear()
         self._unsearched_end = interval[1]
         self.end = SearchEnd(interval[0], reason)

@@ -46,7 +46,7 @@ class SpectrumSample:
         """Whether the leading eigenvalues are a complex pair."""
         return bool(self.w[0].imag != 0)
 
-    def scaled_squared_eigenvalue_difference(self) -> tuple[float, float] | None:
+    def scaled_squared_difference_and_slope(self) -> tuple[float, float] | None:
         """Returns (tau^2 (w1 - w2)^2, derivative of this product with respect to p), tau: `relaxation_time`,
         for the two leading eigenvalues w1, w2; None if w1 is real and w2 is complex."""
         if self.oscillates:
@@ -61,14 +61,14 @@ class SpectrumSample:
         # The derivative of w itself is infinite at a double eigenvalue, that of the square is not.
         return gap**2, 2 * gap * slope
 
-    def scaled_growth_gap_to_other_type(self) -> tuple[float, float] | None:
+    def scaled_other_type_gap_and_slope(self) -> tuple[float, float] | None:
         """Returns (tau Re(w1 - w), derivative of this product with respect to p), tau: `relaxation_time`. w1:
         leading eigenvalue. w: first complex eigenvalue if w1 is real, first real eigenvalue if w1 is complex;
         None if there is no such w at this sample."""
         for i, w in enumerate(self.w[1:], 1):
             # Eigenvalues are sorted by growth, so the first of the other kind can take the lead first.
             if (w.imag != 0) != self.oscillates:
-                return self.scaled_growth_gap(0, i)
+                return self.scaled_growth_gap_and_slope(0, i)
         return None
 
     def scaled_mean_and_product_of_next_gaps(self) -> tuple[tuple[float, float], tuple[float, float]] | None:
@@ -99,19 +99,19 @@ class SpectrumSample:
             (product * squared_time[0], product_slope * squared_time[0] + product * squared_time[1]),
         )
 
-    def scaled_growth_gap(self, i: int, j: int) -> tuple[float, float]:
+    def scaled_growth_gap_and_slope(self, i: int, j: int) -> tuple[float, float]:
         """Returns (tau Re(w - v), derivative of this product with respect to p), tau: `relaxation_time`, for
         the eigenvalues w and v with the indices i and j."""
         return self._times_relaxation_time(
             (self.w[i] - self.w[j]).real, (self.slopes[i] - self.slopes[j]).real
         )
 
-    def scaled_growth_gap_of_leading_pair(self) -> tuple[float, float]:
+    def scaled_pair_growth_gap_and_slope(self) -> tuple[float, float]:
         """Returns (tau Re((w1 + w2)/2 - w3), derivative of this product with respect to p), tau:
         `relaxation_time`, for the first three eigenvalues w1, w2, w3."""
         # Each of the two alone has an infinite slope at the double eigenvalue; their mean has not.
-        first_gap, first_slope = self.scaled_growth_gap(0, 2)
-        second_gap, second_slope = self.scaled_growth_gap(1, 2)
+        first_gap, first_slope = self.scaled_growth_gap_and_slope(0, 2)
+        second_gap, second_slope = self.scaled_growth_gap_and_slope(1, 2)
         return (first_gap + second_gap) / 2, (first_slope + second_slope) / 2
 
     def scaled_squared_frequency(self, i: int) -> tuple[float, float]:
@@ -122,7 +122,7 @@ class SpectrumSample:
 
     def _times_relaxation_time(self, value: float, slope: float) -> tuple[float, float]:
         """Returns (tau value, derivative of this product with respect to p) for a quantity `value` with the
-        derivative `slopes`; the factor tau, the `relaxation_time`, preserves zeros and signs."""
+        derivative `slope`; the factor tau, the `relaxation_time`, preserves zeros and signs."""
         return float(value * self.relaxation_time), float(
             slope * self.relaxation_time + value * self.relaxation_time_slope
         )

@@ -78,9 +78,9 @@ def thresholds_with_status(
     # A part of the range that was not searched hides more than any other doubt, so it comes first.
     if result.ended_early:
         status = ThresholdStatus.ended_early
-    elif not math.isnan(result.open_range[0]):
+    elif not math.isnan(result.range_of_further_crossings[0]):
         status = ThresholdStatus.window_open
-    # Exceeds, because a search that fills the list exactly has found all that it holds.
+    # A list that is exactly full lacks no threshold.
     elif len(result.thresholds) > max_thresholds:
         status = ThresholdStatus.list_full
     # A proof is checked last: an inaccurate list is worse than an unproved one.
@@ -110,5 +110,5 @@ def warm_up() -> None:
 def filament_flutter_force() -> float:
     """Force, in k3/L^2, at which the filament (k1 = k2 = inf, gamma3 = 0) flutters (De Canio et al. 2017)."""
     result = find_thresholds(ParameterPath(Rod(F=0.0, k1=math.inf, k2=math.inf, gamma3=0.0), "F"), 0.0, 60.0)
-    # The onset of oscillation comes before flutter, so the first threshold is not the one wanted.
+    # The onset of oscillation comes before flutter, so the first threshold is not the onset of flutter.
     return next(c.value for c in result.thresholds if c.kind == ThresholdKind.hopf)

@@ -8,7 +8,7 @@ nonuniform arms from `arm.crossings`; exchanges from `leader_exchanges`. Winding
 import math
 from dataclasses import dataclass, replace
 
-from ...determinant.certificate.covering import CrossingBox, cover_with_boxes
+from ...determinant.certificate.covering import CrossingBox, zeros_and_open_boxes_of_covering
 from ...determinant.certificate.first_crossing_boxes import first_crossing_boxes
 from ...determinant.parameter_path import ParameterPath, coefficients_at, determinant_value_on_path
 from ...determinant.roots.newton import LocatedEigenvalue
@@ -16,7 +16,7 @@ from ..unsolvable import Unsolvable
 from .arm.crossings import CrossingSearch
 from .arm.path import ArmPath, path_problem
 from .leader_exchanges import LeaderExchangeSearch
-from .path_problem import PathProblem
+from .path_problem import PathEigenproblem
 from .search_range import SearchEnd
 from .threshold_kinds import Threshold, crossing_kind
 from .unstable_modes import UnstableModeCounter
@@ -47,14 +47,14 @@ class ThresholdSearchResult:
     ended_early: bool = False
     """Whether the searched interval is shorter than the requested interval, at its end or, in a row of a
     diagram, at its start; the reason is in `doubt_text`."""
-    open_range: tuple[float, float] = (math.nan, math.nan)
+    range_of_further_crossings: tuple[float, float] = (math.nan, math.nan)
     """Smallest interval that contains all possible further crossings; (nan, nan) if there are none."""
     unstable_at_start: int = -1
     unstable_at_end: int = -1
     oscillates_at_start: bool = False
     """Whether a complex pair leads at the start of the path."""
     is_proved: bool
-    """Whether the crossings are complete, all counts agree, and each leading eigenvalue leads."""
+    """Whether a proof succeeded: crossings complete, counts consistent, leading eigenvalues proved."""
     determinant_evaluation_count: int = 0
     """Number of evaluations of the determinant D for the boxes."""
     eigenvalue_solve_count: int = 0
@@ -70,9 +70,9 @@ class ThresholdSearchResult:
 
 @dataclass(frozen=True, slots=True)
 class PathCrossings:
-    """Crossings of the imaginary axis along `path`. undecided_intervals: of the parameter, with possible
-    further crossings. search_end: end of the search. determinant_evaluation_count: number of evaluations of D
-    in the covering."""
+    """Crossings of the imaginary axis along `path`. undecided_intervals: intervals of the parameter that may
+    contain further crossings. search_end: end of the search. determinant_evaluation_count: number of
+    evaluations of D in the covering."""
 
     path: ParameterPath
     crossings: list[Threshold]
@@ -119,7 +119,7 @@ def find_thresholds(
         ends = crossings.searched_interval(start, stop)
         counter = UnstableModeCounter(problem, crossings.undecided_intervals, certify)
         # Without load the operator is self-adjoint and negative: no mode is unstable, no count is needed.
-        is_unloaded = path.name == "F" and start == 0
+        is_unloaded = path.parameter_name == "F" and start == 0
         start_count = 0 if is_unloaded else counter.count_at_start(*ends, crossings.crossings)
         oscillates = search.sample_at(path.coordinate(ends[0])).oscillates
         ordered = sorted(exchanges + crossings.crossings, key=lambda c: c.value)
@@ -143,15 +143,15 @@ def find_imaginary_axis_crossings(
 ) -> ThresholdSearchResult:
     """Crossings of the imaginary axis by pairs between the parameter values `start` and `stop`, without
     exchanges of the leading eigenvalue, in half the time of `find_thresholds`. certify: whether a proof is
-    requested. The result is `is_proved` if boxes without a further crossing cover the region and every count
-    agrees. The search ends early, or raises Unsolvable, for the reasons of `find_thresholds`."""
+    requested. With `certify`, the result is `is_proved` if no further crossing is possible and every count
+    agrees. Other arguments, early ends and errors: as for `find_thresholds`."""
     low, high = sorted((path.coordinate(start), path.coordinate(stop)))
     problem = path_problem(path)
     path_crossings = _crossings(problem, (low, high), certify, max_crossings)
     counter = UnstableModeCounter(problem, path_crossings.undecided_intervals, certify)
     ends = path_crossings.searched_interval(start, stop)
     ordered = sorted(path_crossings.crossings, key=lambda c: c.value)
-    count = 0 if path.name == "F" and start == 0 else counter.count_at_start(*ends, ordered)
+    count = 0 if path.parameter_name == "F" and start == 0 else counter.count_at_start(*ends, ordered)
     crossings, end_count = counter.thresholds_with_counts_and_end_count(ordered, ends, count)
     return _search_result(path_crossings, (start, stop), counter, crossings, (count, end_count))
 
@@ -163,19 +163,19 @@ def _search_result(
     thresholds: tuple[Threshold, ...],
     end_counts: tuple[int, int],
 ) -> ThresholdSearchResult:
-    """`ThresholdSearchResult` of `thresholds` in the searched part of the requested `interval`, and why the
-    search ended early. counter: gaps and doubts of the search. end_counts: numbers of unstable modes at
-    both ends."""
+    """The result of a search that found `thresholds` in the searched part of the requested `interval`, with
+    the reason if the search ended early. crossings: crossings of the imaginary axis, with the end of the
+    search. counter: gaps and doubts of the search. end_counts: numbers of unstable modes at both ends."""
     starts, ends = zip(*counter.gaps, strict=True) if counter.gaps else ((math.nan,), (math.nan,))
     is_known = all(number >= 0 for number in (*end_counts, *(c.unstable_after for c in thresholds)))
     reason = crossings.search_end.reason
     end = crossings.path.parameter.value(crossings.search_end.p)
-    message = f"the search ends at {crossings.path.name} = {end:.12g}: {reason}" if reason else ""
+    message = f"the search ends at {crossings.path.parameter_name} = {end:.12g}: {reason}" if reason else ""
     return ThresholdSearchResult(
         thresholds=thresholds,
         searched_interval=crossings.searched_interval(*interval),
         ended_early=bool(reason),
-        open_range=(min(starts), max(ends)),
+        range_of_further_crossings=(min(starts), max(ends)),
         unstable_at_start=end_counts[0],
         unstable_at_end=end_counts[1],
         is_proved=counter.certify and not counter.gaps and not counter.doubts and is_known,
@@ -185,10 +185,11 @@ def _search_result(
 
 
 def _crossings(
-    problem: PathProblem, p_ends: tuple[float, float], certify: bool, max_crossings: float
+    problem: PathEigenproblem, p_ends: tuple[float, float], certify: bool, max_crossings: float
 ) -> PathCrossings:
-    """Crossings for path variables in `p_ends`: by boxes, or for nonuniform arms by counts of unstable
-    modes (argument principle), proved if `certify`. max_crossings: number at which the search ends."""
+    """Crossings for path variables in `p_ends`: by boxes, or for nonuniform arms by counts of unstable modes
+    (argument principle), proved if `certify`. max_crossings: number of crossings beyond which the search for
+    nonuniform arms ends."""
     if not isinstance(problem, ArmPath):
         return _crossings_by_covering(problem.path, *p_ends)
     search = CrossingSearch(problem, certify)
@@ -205,7 +206,7 @@ def _crossings_by_covering(path: ParameterPath, low: float, high: float) -> Path
     if boxes is None:
         ends = f"from {path.text_at(low)} to {path.text_at(high)}"
         raise Unsolvable(f"no a-priori bound on the eigenvalues applies to all rods {ends}")
-    zeros, undecided, box_count = cover_with_boxes(boxes, path.origin, path.direction)
+    zeros, undecided, box_count = zeros_and_open_boxes_of_covering(boxes, path.origin, path.direction)
     inner_zeros = [
         zero for zero in zeros if low <= zero.p + zero.error_of_p and zero.p - zero.error_of_p <= high
     ]

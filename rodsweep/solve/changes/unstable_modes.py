@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from .threshold_kinds import Threshold, ThresholdKind
 
 if TYPE_CHECKING:
-    from .path_problem import PathProblem  # for annotations only: the module imports solvers
+    from .path_problem import PathEigenproblem  # for annotations only: the module imports solvers
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -20,7 +20,7 @@ class UnstableModeCountSettings:
     count_interval_fractions: tuple[float, ...] = (0.5, 0.3, 0.7)
     """Positions between two crossings, as fractions of the interval, at which the unstable modes are counted,
     in this order, until a count is decided."""
-    min_relative_crossing_distance: float = 1e-3
+    min_relative_gap_between_crossings: float = 1e-3
     """Modes are not counted between two crossings at path variables a < b if (b - a)/|b| is at most this
     number, because a pair is then too close to the imaginary axis."""
     relative_strip_half_width: float = 1e-5
@@ -36,7 +36,7 @@ class UnstableModeCounter:
     numbers. gaps: intervals of the parameter that may contain crossings missing from the list. doubts:
     sentences on counts that are undecided or contradict the crossings."""
 
-    def __init__(self, problem: "PathProblem", gaps: list[tuple[float, float]], certify: bool):
+    def __init__(self, problem: "PathEigenproblem", gaps: list[tuple[float, float]], certify: bool):
         self.problem = problem
         self.path = problem.path
         self.gaps = gaps
@@ -49,7 +49,7 @@ class UnstableModeCounter:
         number = self.problem.count_right_of(0.0, self.path.coordinate(value)).number
         return -1 if number is None else number
 
-    def count_between(self, a: float, b: float) -> int:
+    def count_at_point_between(self, a: float, b: float) -> int:
         """Number of unstable modes at a position between the parameter values a and b, known already or by
         the winding number; -1 if the count is undecided at all positions tried."""
         # For nonuniform arms the search for crossings has counted the modes of some rods already.
@@ -68,7 +68,7 @@ class UnstableModeCounter:
     def expected_count_if_confirmed(self, a: float, b: float, frequency: float, expected: int) -> int:
         """`expected`, if counts on both sides of the imaginary axis show that in the middle between the
         parameter values a and b exactly one pair is near the axis, and that with or without this pair
-        `expected` modes are unstable; otherwise -1. frequency of the pair, in 1/tau2."""
+        `expected` modes are unstable; otherwise -1. frequency: frequency of the pair, in 1/tau2."""
         distance = UNSTABLE_MODE_COUNT_SETTINGS.relative_strip_half_width * frequency
         middle = self.path.coordinate((a + b) / 2)
         right = self.problem.count_right_of(distance, middle).number
@@ -77,9 +77,10 @@ class UnstableModeCounter:
         return expected if is_one_pair and expected in (right, left) else -1
 
     def count_at_start(self, start: float, stop: float, crossings: list[Threshold]) -> int:
-        """Number of unstable modes at `start`, before all crossings `crossings` of the imaginary axis. If the
-        count at `start` is undecided, as for a pair close to the axis, the number follows from a count before
-        the first crossing, or between later crossings, and their directions. -1 if undecided."""
+        """Number of unstable modes at `start`, before all crossings `crossings` of the imaginary axis up to
+        the parameter value `stop`. If the count at `start` is undecided, as for a pair close to the axis, the
+        number follows from a count before the first crossing, or from a count between later crossings and the
+        directions of the crossings before. -1 if undecided."""
         # Beyond a gap the number of modes does not give the number before.
         end = min([stop, *(gap_start for gap_start, _ in self.gaps)])
         ordered = sorted((c for c in crossings if c.value - c.error < end), key=lambda c: c.value)
@@ -92,7 +93,7 @@ class UnstableModeCounter:
         upper_edges = [*(c.value - c.error for c in ordered), end]
         change = 0
         for index, (a, b) in enumerate(zip(lower_edges, upper_edges, strict=True)):
-            number = self.count_between(a, b) if a < b else -1
+            number = self.count_at_point_between(a, b) if a < b else -1
             if number >= 0:
                 # A contradiction of crossings and count leaves the number unknown.
                 return number - change if number >= change else -1
@@ -130,8 +131,9 @@ class UnstableModeCounter:
     def _count_before(self, a: float, b: float, unstable_count: int, frequency: float) -> int:
         """Number of unstable modes just before b: `unstable_count`, the number just after a, compared with a
         count between a and b if `certify`; a contradiction is added to `doubts`. If a gap lies between a and
-        b, the result is the number counted behind the gap, or -1 if undecided. frequency, in 1/tau2: of the
-        pair that crosses the axis at b, or before; 0 if there is no crossing."""
+        b, the result is the number counted behind the gap, or -1 if undecided. frequency: frequency, in
+        1/tau2, of the pair that crosses the axis at b or was the last to cross before; 0 if there is no
+        crossing."""
         gaps_between = [gap for gap in self.gaps if gap[1] > a and gap[0] < b]
         if gaps_between:
             # A gap may hide crossings, so the modes are counted again after the gap.
@@ -140,9 +142,9 @@ class UnstableModeCounter:
         elif not self.certify:
             return unstable_count
         # So close to two crossings their pairs are almost on the axis, and the count would be undecided.
-        if b - a <= UNSTABLE_MODE_COUNT_SETTINGS.min_relative_crossing_distance * abs(b):
+        if b - a <= UNSTABLE_MODE_COUNT_SETTINGS.min_relative_gap_between_crossings * abs(b):
             return -1 if gaps_between else unstable_count
-        count = self.count_between(a, b)
+        count = self.count_at_point_between(a, b)
         if gaps_between or unstable_count < 0:
             return count
         # Between two close Hopf points their pair may be too near the axis at all positions.
@@ -152,7 +154,7 @@ class UnstableModeCounter:
             undecided_text = "the count of unstable modes is undecided"
             count_text = f"{count} modes are unstable" if count >= 0 else undecided_text
             self.doubts.append(
-                f"{count_text} between {self.path.name} = {a:.12g} and {b:.12g}"
+                f"{count_text} between {self.path.parameter_name} = {a:.12g} and {b:.12g}"
                 + (f", but the crossings found imply {unstable_count}" if count >= 0 else "")
             )
         return unstable_count

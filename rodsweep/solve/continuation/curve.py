@@ -35,7 +35,7 @@ class StepResult(NamedTuple, Generic[Solution]):
 
 
 class CurveProblem(Protocol[Solution]):
-    """Interface of `follow_curve` to a curve of solutions. behind: solutions so far, in order along the
+    """Interface of `follow_curve` to a curve of solutions. previous: solutions so far, in order along the
     curve."""
 
     def step(self, previous: Sequence[Solution], length: float) -> StepResult[Solution]:
@@ -60,7 +60,7 @@ class CurveProblem(Protocol[Solution]):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StepControl:
-    """Step length control along a curve. Raises ValueError unless `max_length_ratio` exceeds 1."""
+    """Step length control along a curve. Raises ValueError unless `max_successive_length_ratio` exceeds 1."""
 
     first_length: float
     """First step length."""
@@ -80,9 +80,9 @@ class StepControl:
     """The length of the next step is chosen for this angle, in radians, between successive steps."""
     max_angle: float
     """Largest angle in radians between successive steps; a step with a larger angle fails."""
-    max_length_ratio: float
+    max_successive_length_ratio: float
     """Largest ratio of a step length to the length of the last accepted step."""
-    min_length_ratio: float = 0.5
+    min_successive_length_ratio: float = 0.5
     """Smallest ratio of the next chosen step length to the length of the last accepted step; failed steps are
     halved further."""
     max_solutions: int = 5000
@@ -92,12 +92,13 @@ class StepControl:
     limit avoids a division by 0."""
 
     def __post_init__(self) -> None:
-        if not self.max_length_ratio > 1:
+        if not self.max_successive_length_ratio > 1:
             raise ValueError(
-                f"max_length_ratio = {self.max_length_ratio} must be above 1, so that steps can grow"
+                f"max_successive_length_ratio = {self.max_successive_length_ratio} must be above 1, so that "
+                "steps can grow"
             )
 
-    def require_small_errors(self, result: StepResult[Solution]) -> StepResult[Solution]:
+    def require_same_curve(self, result: StepResult[Solution]) -> StepResult[Solution]:
         """The result `result` itself; raises Unsolvable if its prediction error or angle is so large that the
         solution may lie on another curve."""
         # Negated, so that an error of nan is refused.
@@ -116,8 +117,8 @@ class StepControl:
             self.target_prediction_error / max(result.prediction_error, self.min_error_or_angle)
         ) ** (1 / min(self.prediction_order, solution_count))
         angle_ratio = self.target_angle / max(_angle(result.turn_cosine), self.min_error_or_angle)
-        factor = min(max(min(error_ratio, angle_ratio), self.min_length_ratio), self.max_length_ratio)
-        return min(self.max_length, length * factor)
+        factor = max(min(error_ratio, angle_ratio), self.min_successive_length_ratio)
+        return min(self.max_length, length * min(factor, self.max_successive_length_ratio))
 
 
 def _angle(cosine: float) -> float:
@@ -159,7 +160,7 @@ def next_solution_and_step_length(
     length = min(length, control.max_length)
     while True:
         try:
-            return control.require_small_errors(step(length)), length
+            return control.require_same_curve(step(length)), length
         except FAILURE_EXCEPTIONS:
             if length / 2 < control.min_length:
                 raise

@@ -23,7 +23,7 @@ from ..motion.integrator import RunLimit, Trajectory, destroy_integrators, integ
 from ..motion.leading_mode import leading_mode
 from ..motion.time_scheme import TimeScheme
 from ..orbit.measures import CycleMotion, measures_of
-from ..orbit.orbit import Orbit, node_times
+from ..orbit.orbit import Orbit, node_time_fractions
 from ..orbit.symmetry import NO_SYMMETRY
 from ..point_outcome import outcome_or_failure
 from .accuracy.cycle_errors import CycleErrors, errors_of_two_integrations, message_of_error
@@ -93,7 +93,7 @@ class _IntegrationUntilSettled:
             settled = self._integrate_until_settled(z)
             motion = self._cycle_of_settled_motion(settled)
             is_nearby_rod = self.rod != self.limiting_rod
-            error_ratio = INTEGRATION_SETTINGS.nearby_rod_error_over_accuracy if is_nearby_rod else 1.0
+            error_ratio = INTEGRATION_SETTINGS.max_nearby_rod_error_over_accuracy if is_nearby_rod else 1.0
             tolerance = self.request.accuracy * error_ratio
             for _ in range(INTEGRATION_SETTINGS.max_integration_comparisons):
                 settled = self._settled_on_finer_mesh(settled)
@@ -115,7 +115,7 @@ class _IntegrationUntilSettled:
         order = self.mesh.order + INTEGRATION_SETTINGS.element_order_increase
         self.mesh = mesh_with_edges(self.mesh.edges, order)
         self.scheme = with_reduced_tolerance(self.scheme)
-        self.time_intervals_per_return *= INTEGRATION_SETTINGS.measurement_interval_count_ratio
+        self.time_intervals_per_return *= INTEGRATION_SETTINGS.measurement_interval_growth_factor
         self.system = ExplicitSystem(self.rod, self.mesh)
         z = self.system.state_of_stresses(coarser_system.stresses_on_mesh(self.system.mesh, settled.state))
         return self._integrate_until_settled(relax_fast_components(self.system, z, self.leading_mode.period))
@@ -135,7 +135,7 @@ class _IntegrationUntilSettled:
             z = run.states[-1]
             # The last time step of a run is the first time step of the next run, which continues the motion.
             time_step = float(run.times[-1] - run.times[-2])
-            times, states = self._upward_tip_angle_crossings(run)
+            times, states = self._return_times_and_states(run)
             self.return_times.record_run(times, float(run.times[-1]))
             past_moments.extend(self.system.layout.stress_field(states, "m3"))
             self.return_count += max(len(states), 1)
@@ -174,7 +174,7 @@ class _IntegrationUntilSettled:
             raise NoCycleFound(status, failure.message)
         return run
 
-    def _upward_tip_angle_crossings(self, run: Trajectory) -> tuple[Array, Array]:
+    def _return_times_and_states(self, run: Trajectory) -> tuple[Array, Array]:
         """Returns (times, states), (k,) and (k, unknowns), at which the tip's theta rises through 0 on a run.
         The motion is integrated to these times, because cubic interpolation is less accurate."""
         times = poincare_section_crossings(self.system, run)[0]
@@ -201,7 +201,7 @@ class _IntegrationUntilSettled:
         duration = self._max_run_duration(count)
         scheme = replace(self.scheme, tolerance=tolerance)
         run = self._integrate(settled.state, duration, settled.last_time_step, limit, scheme)
-        times = self._upward_tip_angle_crossings(run)[0]
+        times = self._return_times_and_states(run)[0]
         if len(times) <= settled.returns_per_period:
             raise NoCycleFound(
                 IntegratedCycleStatus.not_settled,
@@ -211,7 +211,7 @@ class _IntegrationUntilSettled:
         spline = CubicSpline(run.times, run.states)
         stages = INTEGRATION_SETTINGS.measurement_stage_count
         interval_count = self.time_intervals_per_return * settled.returns_per_period
-        states = spline(times[0] + period * node_times(interval_count, stages))
+        states = spline(times[0] + period * node_time_fractions(interval_count, stages))
         form = StressForm(self.rod, self.system.mesh)
         states = collocation_states(self.system, form, states)
         return CycleMotion(Orbit.from_states(form, NO_SYMMETRY, period, states, stages))
@@ -219,8 +219,8 @@ class _IntegrationUntilSettled:
     def _errors_with_limiting_rod_error(
         self, settled: SettledMotion, cycle: CycleMotion, errors: CycleErrors
     ) -> CycleErrors:
-        """`errors` plus the error of integrating a nearby rod instead of a limiting rod; raises
-        NoCycleFound."""
+        """The errors `errors` of the cycle `cycle` plus the error of integrating a nearby rod instead of a
+        limiting rod; raises NoCycleFound. settled: settled motion on this cycle."""
         self.rod = rod_for_time_integration(
             self.limiting_rod, INTEGRATION_SETTINGS.second_rod_limit_distance_ratio
         )

@@ -16,7 +16,7 @@ import numpy as np
 
 from ...arrays import Array, Complex, list_of
 from ...discretization.stress.form import StressForm
-from ..orbit.element_order_ratios import without_excess_orders
+from ..orbit.element_order_choice import without_excess_orders
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.measures import CycleMotion
 from ..orbit.mesh_choice import coarser_regraded_mesh
@@ -125,9 +125,9 @@ class CycleStart:
 def _next_mesh_and_calibration(
     refined: RefinedCycle, previous: "CycleStart | None", name: str, accuracy: float
 ) -> tuple[OrbitMesh, MeshErrorCalibration]:
-    """Returns (mesh, calibration) for the next cycle of a chain. The calibration is outdated if the errors
-    must be measured again at the next cycle. previous: data of the previous rod, or None. name:
-    varied parameter. accuracy: requested relative accuracy."""
+    """Returns (mesh, calibration) for the next cycle of a chain, after the cycle `refined`. The calibration
+    is outdated if the errors must be measured again at the next cycle. previous: data of the previous rod, or
+    None. name: varied parameter. accuracy: requested relative accuracy."""
     current_mesh = mesh_of_orbit(refined.orbit)
     calibration = refined.calibration
     is_accurate = (
@@ -149,8 +149,9 @@ def _next_mesh_and_calibration(
 
 
 def _max_new_mesh_cost_ratio(refined: RefinedCycle, previous: "CycleStart | None", name: str) -> float:
-    """Largest cost of a new mesh divided by the cost of the current, sufficient mesh; 0 if the current mesh
-    remains in use. previous: data of the previous rod, or None. name: varied parameter."""
+    """Largest cost of a new mesh divided by the cost of the current, sufficient mesh of the cycle `refined`;
+    0 if the current mesh remains in use. previous: data of the previous rod, or None. name: varied
+    parameter."""
     if previous is None:
         # Coefficient tails, not measured errors, determined the first mesh of a chain.
         return NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio

@@ -73,7 +73,7 @@ class CycleRequest:
     """Number of times at which the tip's path from the start is stored; 0 for no path. A motion with a stored
     path is always integrated, without scaling of its state."""
     tip: tuple[float, float] | None = None
-    """x, y of the tip, in L, at the start of the motion; None for a start by `start`."""
+    """x, y of the tip, in L, at the start of the motion; None if the field `start` determines the start."""
     frames: int = 0
     """Number of shapes per return of the tip that are stored for an animation; 0 for no animation."""
 
@@ -87,8 +87,8 @@ class CycleRequest:
 @dataclass(frozen=True, kw_only=True)
 class CycleOutcome:
     """Outcome of the task limit_cycle for one rod, with the quantities of the cycle; unknown quantities are
-    NaN or None. message: for the user, or "". seconds: computing time. elements, order: number and order of
-    the elements of the mesh, 0 if unknown.
+    NaN or None. message: for the user, or "". seconds: computing time, in s. elements, order: number and
+    order of the elements of the mesh, 0 if unknown.
 
     For a motion on a torus only the multipliers of the unstable cycle inside the torus are known. Time series
     over a period start where the tip's y rises through its mean.

@@ -18,9 +18,9 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import ConvergedOrbit, newton_step_if_matrix_distant, relative_change, solve_by_newton
 from ..orbit.normalised_orbit import (
     extrapolated_change_weights,
+    normalisation_arrays,
     normalised_orbit_values,
     predicted_normalised_values,
-    reflection_arrays,
     tangent_of_normalised_orbit,
     values_from_normalised,
 )
@@ -56,7 +56,7 @@ PARAMETER_STEP_CONTROL = StepControl(
     target_prediction_error=0.15,
     prediction_order=3,
     max_angle=inf,
-    max_length_ratio=3.0,
+    max_successive_length_ratio=3.0,
     max_solutions=100,
 )
 """Control of the steps into which a parameter change is divided; a step length is a fraction of this change.
@@ -87,8 +87,8 @@ class CyclePredictor:
 
     @cached_property
     def normalised_values(self) -> Array:
-        """Values of the solved orbit, divided by its size where they change sign under the reflection, and
-        the squared size, (N + 1,)."""
+        """Values of the solved orbit, followed by its squared size, (N + 1,). Values that change sign under
+        the reflection are divided by the size."""
         return normalised_orbit_values(self.orbit)
 
     def prediction_weights(self, step: float) -> Array:
@@ -116,7 +116,7 @@ class CyclePredictor:
             raise Unsolvable("no cycle is predicted: the branch ends before this parameter value")
         target = replace(form, mesh=self.orbit.form.mesh)
         return replace(
-            self.orbit, form=target, values=values_from_normalised(values, reflection_arrays(self.orbit))
+            self.orbit, form=target, values=values_from_normalised(values, normalisation_arrays(self.orbit))
         )
 
     def on_mesh(self, target: OrbitMesh) -> "CyclePredictor":
@@ -180,8 +180,8 @@ def predictor_from(solved: ConvergedOrbit, previous: CyclePredictor | None, name
 
 
 def relative_parameter_difference(first: StressForm, second: StressForm, name: str) -> float:
-    """|a - b|/max(|a|, |b|) for the coordinates a, b of the parameter `name` of the rods in two
-    forms; 0 if a = b."""
+    """|a - b|/max(|a|, |b|) for the coordinates a, b of the parameter `name` of the rods in the forms `first`
+    and `second`; 0 if a = b."""
     a = first.rod.coordinate(name)
     b = second.rod.coordinate(name)
     return abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0
@@ -200,7 +200,7 @@ def orbit_near_prediction(
 
 
 def _prediction_error(predicted: Orbit, solved: ConvergedOrbit) -> float:
-    """Relative distance of a solved orbit from its prediction."""
+    """Relative distance of a solved orbit from its prediction `predicted`."""
     return relative_change(predicted, solved.orbit.values - predicted.values)
 
 

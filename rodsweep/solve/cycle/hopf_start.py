@@ -18,11 +18,11 @@ from ...discretization.stress.form import StressForm
 from ...discretization.stresses_at_jumps import interpolate_stress
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
-from ..changes.path_problem import PathProblem
+from ..changes.path_problem import PathEigenproblem
 from ..hopf.normal_form import NormalForm, normal_form_by_mesh_rule
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import ConvergedOrbit, newton_step_if_matrix_distant, solve_by_newton
-from ..orbit.orbit import Orbit, node_times
+from ..orbit.orbit import Orbit, node_time_fractions
 from ..orbit.symmetry import REFLECTION
 from ..spectrum.candidates import CANDIDATE_SETTINGS
 from ..spectrum.problem import transverse_problem
@@ -99,7 +99,7 @@ def _hopf_point_between(
 
 
 def _newton_hopf_point(
-    problem: PathProblem, F: float, guess: complex, end_forces: tuple[float, float]
+    problem: PathEigenproblem, F: float, guess: complex, end_forces: tuple[float, float]
 ) -> HopfPointBelowForce | None:
     """The Hopf point with a force between `end_forces`, by Newton's method from the force `F` and the
     eigenvalue `guess`; None if not found."""
@@ -174,7 +174,8 @@ def predicted_orbit_near_hopf(form: StressForm, w: complex, amplitude: float) ->
 
 
 def _normal_form(form: StressForm, w: complex) -> NormalForm:
-    """Normal form of the rod in `form`, with the exact eigenvalue `w` instead of the mesh's."""
+    """Normal form of the rod in `form`, with the exact eigenvalue `w` instead of the eigenvalue of the
+    mesh."""
     normal = normal_form_by_mesh_rule(form.rod, w, normal_form_accuracy(form.rod))
     return replace(normal, w=w)
 
@@ -236,7 +237,7 @@ def orbit_of_amplitude(normal: NormalForm, form: StressForm, amplitude: float, f
     """The orbit of the rod in `form` with the motion of a normal form. amplitude: largest tip y, in L.
     frequency: in 1/tau2."""
     stage_count = HOPF_START_SETTINGS.coarse_stage_count
-    times = node_times(HOPF_START_SETTINGS.coarse_time_interval_count, stage_count)
+    times = node_time_fractions(HOPF_START_SETTINGS.coarse_time_interval_count, stage_count)
     X = normal.cycle_states(amplitude, np.pi * times)
     S, V = normal.mixed_form.stresses_and_velocities(X)
     source = normal.mixed_form.mesh

@@ -14,7 +14,7 @@ class HopfStartSettings:
     """Relative decrease between successive forces at which the search evaluates the leading growth rate."""
     min_force: float = 1e-2
     """Force, in k3/L^2, at which the search for a Hopf point ends: at smaller forces no rod oscillates,
-    because F nu (nu + F c2) must exceed the order of pi^2; nu: stretch, c2 = 1/k2."""
+    because F nu (nu + F c2) must exceed a number of the order of pi^2; nu: stretch, c2 = 1/k2."""
     relative_hopf_eigenvalue_tolerance: float = 1e-6
     """A Hopf point is accepted if |Re w| and |Im w - frequency| <= relative_hopf_eigenvalue_tolerance |w|; w:
     leading eigenvalue at this point. Bisection ends at this relative width of the interval of the force."""
@@ -30,9 +30,9 @@ class HopfStartSettings:
     """Relative accuracy of the normal form's coefficients; the truncation error of the normal form is
     larger."""
     max_axial_drag_for_refinement: float = 1e-2
-    """If the smallest axial drag along the rod is less, the mesh of the normal form is finer in proportion:
-    mesh errors of the axial force are divided by the drag in the axial velocity, and the Landau coefficient
-    would have an error of 3 percent at a drag of 1e-4 and of 100 times its value at 1e-6."""
+    """If the smallest axial drag along the rod is below this number, the mesh of the normal form is finer in
+    proportion: mesh errors of the axial force are divided by the drag in the axial velocity, and the Landau
+    coefficient would have an error of 3 percent at a drag of 1e-4 and of 100 times its value at 1e-6."""
     finest_normal_form_accuracy: float = 1e-15
     """Smallest relative accuracy for which the mesh of the normal form is chosen: rounding error."""
     start_force_distances: tuple[float, ...] = (0.3, 0.12, 0.03, 0.006, 1e-3, 2e-4)
@@ -41,7 +41,7 @@ class HopfStartSettings:
     normal form has an error of 25 percent at the first distance, of 10 percent at the second. The last two
     are for rods of small axial drag, whose cycles may grow ten times as fast."""
     start_amplitudes: tuple[float, ...] = (0.3, 0.15, 0.08, 0.04)
-    """Largest y, in L, of normal form's orbits from which the branch is followed in stages, tried in this
+    """Largest y, in L, of the normal form's orbits from which the branch is followed in stages, tried in this
     order if Newton's method fails from all `start_force_distances`. Rods of small axial drag have y = 0.6 at
     a relative distance of 1e-3 above the Hopf point; 14 of 16 such rods reach their cycle from one of these
     orbits. The other two have y > 1 already at 3e-4 by the normal form, which then fails everywhere."""
@@ -55,8 +55,8 @@ class HopfStartSettings:
     """Up to this relative distance of the force above the Hopf point, Newton's method starts from the normal
     form's orbit at the given force itself, with an error of its amplitude of 1 percent for most rods."""
     max_direct_start_tip_y: float = 0.7
-    """If the largest y of the normal form's orbit at the given force, in L, is larger, Newton's method does
-    not start there: the largest y of cycles of rods of small axial drag is then below half of it."""
+    """Newton's method does not start at the given force if the largest y of the normal form's orbit there, in
+    L, exceeds this number: the true cycle of a rod of small axial drag then has less than half this y."""
     coarse_time_interval_count: int = 8
     """Number of time intervals of the coarse mesh, over half a period."""
     coarse_stage_count: int = 3

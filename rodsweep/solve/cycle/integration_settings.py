@@ -26,15 +26,15 @@ class IntegrationSettings:
     """Relative distance between two returns that integration errors alone may cause, divided by the local
     tolerance."""
     min_count_of_distances_below_error: int = 3
-    """Number of successive distances below the distance that integration errors may cause, which show that
-    the integration errors are smaller."""
-    max_integration_error_ratio: float = 3.0
+    """If this many successive distances lie below the distance that integration errors may cause, the
+    integration errors are smaller than assumed."""
+    max_ratio_due_to_integration_error: float = 3.0
     """Successive distances that do not decrease are integration errors if they are at most this factor times
     the distance that integration errors were assumed to cause: 2.0 was measured at an accuracy of 1e-2. The
     local tolerance is then reduced by `successive_tolerance_ratio`."""
     difference_safety_factor: float = 2.0
     """Safety factor: error estimate divided by the difference between the results of two integrations."""
-    nearby_rod_error_over_accuracy: float = 0.5
+    max_nearby_rod_error_over_accuracy: float = 0.5
     """For a limiting rod, such as a rod with k1 = inf, integrations are refined until their error is at most
     this fraction of the accuracy; the rest of the accuracy is left for the error of integrating a nearby
     rod."""
@@ -51,9 +51,9 @@ class IntegrationSettings:
     measurement_intervals_per_return: int = 48
     """Number of time intervals, per return of the tip, of the orbit from which the first cycle is
     measured."""
-    measurement_interval_count_ratio: int = 2
-    """Factor by which this number grows from a cycle to the next, finer one, so that the difference of the
-    two contains the error of the measurement."""
+    measurement_interval_growth_factor: int = 2
+    """Factor by which the number of time intervals per return grows from a measured cycle to the next, finer
+    one, so that the difference of the two cycles contains the error of the measurement."""
 
     def __post_init__(self) -> None:
         require_enough_stages(self.measurement_stage_count)

@@ -3,8 +3,8 @@
 The search starts from the leading eigenmode or from the cycle of a neighbour, the previous rod of a chain.
 From the eigenmode the motion is integrated until the motion approaches a cycle (`transient_integration`);
 near a Hopf point the normal form predicts the cycle instead (`small_motion`). The cycle of a neighbour
-predicts the cycle of this rod by continuation (`start_for_next_rod`). Newton's method then solves for the
-periodic orbit on meshes chosen for the requested accuracy (`accuracy`). An orbit is accepted as a stable
+predicts the cycle of this rod by continuation (`cycle_of_neighbouring_rod`). Newton's method then solves for
+the periodic orbit on meshes chosen for the requested accuracy (`accuracy`). An orbit is accepted as a stable
 cycle only by its Floquet multipliers: near a Hopf point, where motions decay slowly, two successive peaks of
 the motion may agree although no cycle exists.
 """
@@ -32,7 +32,7 @@ from .cycle_outcome import (
     with_multipliers,
 )
 from .hopf_start import hopf_point_below_force, orbit_from_hopf
-from .second_state import second_state
+from .second_state import second_state_force_and_message
 from .small_motion import reason_for_decay, stable_cycle_near_hopf
 from .status import CycleStatus
 from .straight_rod import (
@@ -41,7 +41,7 @@ from .straight_rod import (
     straight_rod_stability,
     straight_rod_stability_in_chain,
 )
-from .transient.motion_mesh import MOTION_MESH_SETTINGS, motion_mesh, motion_meshes
+from .transient.motion_mesh import MOTION_MESH_SETTINGS, motion_mesh, motion_meshes_by_refinement
 from .transient.shape_trace import ShapeTrace
 from .transient.tip_trace import TipTrace
 from .transient.torus import classify_quasiperiodic
@@ -96,7 +96,7 @@ def _solve_cycle_or_raise(
     refined = None
     if neighbour is not None and parameter_name is not None:
         form = StressForm(rod, neighbour.predictor.orbit.form.mesh)
-        # A failed continuation is no failure of the point: the motion is integrated instead.
+        # A failed continuation is not a failure of the point: the motion is integrated instead.
         with suppress(Unsolvable):
             refined = cycle_from_neighbour(neighbour, form, parameter_name, request.accuracy, workspace)
     elif neighbour is None and not request.is_motion_recorded:
@@ -110,7 +110,7 @@ def _solve_cycle_or_raise(
     if decay_reason and not request.is_motion_recorded:
         return replace(straight, message=decay_reason)
     unstable_cycle = refined if refined is not None and refined.is_stable is False else None
-    for form in (StressForm(rod, mesh) for mesh in motion_meshes(rod, request.transient > 0)):
+    for form in (StressForm(rod, mesh) for mesh in motion_meshes_by_refinement(rod, request.transient > 0)):
         # On too coarse a mesh a motion may repeat where finer meshes have no cycle.
         transient = TransientIntegration(form, stability, request, parameter_name, unstable_cycle, workspace)
         end = _outcome_of_motion(transient, request, neighbour)
@@ -155,7 +155,8 @@ def _with_motion_data(
 
 
 def _motion_shapes(transient: TransientIntegration, trace: ShapeTrace, request: CycleRequest) -> MotionShapes:
-    """The recorded shapes of an integrated motion, at the requested numbers of times and nodes."""
+    """The shapes `trace` recorded along the integrated motion `transient`, at the requested numbers of times
+    and nodes."""
     return_times = [time for time, _ in transient.past_returns]
     return trace.motion_shapes(return_times, transient.leading_mode.period, request.frames, request.nodes)
 
@@ -185,8 +186,8 @@ def _with_next_start(
 
 
 def _with_status_by_spectrum(cycle: CycleOutcome, stability: StraightRodStability) -> CycleOutcome:
-    """The outcome `cycle`, with the status `not_settled` and a reason instead of the status `straight` unless
-    the spectrum proves the straight rod stable."""
+    """The outcome `cycle`. The status `straight` is replaced by `not_settled`, with a reason as message,
+    unless the spectrum, `stability`, proves the straight rod stable."""
     if cycle.status != CycleStatus.straight or stability.is_stable:
         return cycle
     return replace(cycle, status=CycleStatus.not_settled, message=stability.unproved_stability_text)
@@ -195,7 +196,7 @@ def _with_status_by_spectrum(cycle: CycleOutcome, stability: StraightRodStabilit
 def _with_second_state(rod: Rod, cycle: CycleOutcome, stability: StraightRodStability) -> CycleOutcome:
     """The outcome `cycle` with the second stable state of the rod, as far as known, and a message about this
     state."""
-    state, F, reason = second_state(rod, cycle.status, stability.is_stable)
+    state, F, reason = second_state_force_and_message(rod, cycle.status, stability.is_stable)
     message = "; ".join(filter(None, (cycle.message, reason)))
     return replace(cycle, second_state=int(state), subcritical_F=F, message=message)
 
@@ -210,7 +211,8 @@ def _cycle_from_hopf(
     """The outcome of the search for the cycle on the branch from the Hopf point below the force of the rod.
 
     outcome: outcome to which the quantities of the cycle are added, or only a status and a message if no
-    cycle is found. stability: stability of the straight rod, for the status if there is no Hopf point.
+    cycle is found. stability: stability of the straight rod, for the status if there is no Hopf point. form:
+    the discretized rod.
     """
     try:
         hopf = hopf_point_below_force(form.rod)
@@ -227,8 +229,8 @@ def _cycle_from_hopf(
 def _outcome_of_motion(
     transient: TransientIntegration, request: CycleRequest, neighbour: CycleStart | None
 ) -> TransientOutcome:
-    """Outcome of a motion integrated from the requested tip position, from the leading mode, or from a state
-    of the neighbour's cycle; a quasiperiodic motion is recognised."""
+    """Outcome of the motion that `transient` integrates from the requested tip position, from the leading
+    mode, or from a state of the neighbour's cycle; a quasiperiodic motion is recognised."""
     system = transient.system
     if request.tip is not None:
         start = bent_state_with_tip_at(system, *request.tip)

@@ -1,8 +1,8 @@
 """Second stable state of a rod, in addition to the final state of its motion.
 
 If the straight rod is stable and the final state is a different state, the rod has two stable states. If the
-final state is the straight rod, a nearby subcritical Hopf point makes a second stable state possible, but is
-no proof of this state.
+final state is the straight rod, a nearby subcritical Hopf point makes a second stable state possible, but
+does not prove this state.
 """
 
 from enum import IntEnum
@@ -27,7 +27,7 @@ class SecondStableState(IntEnum):
     cycle_possible = 2
 
 
-def second_state(
+def second_state_force_and_message(
     rod: Rod, status: PointStatus, is_straight_stable: bool | None
 ) -> tuple[SecondStableState, float, str]:
     """Returns (state, F, message). state: second stable state of the rod. F: force of a subcritical Hopf

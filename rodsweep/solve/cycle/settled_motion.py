@@ -35,7 +35,7 @@ class ReturnTimeEstimate:
     """Time between returns of the tip to theta = 0, over successive runs of one motion.
 
     shortest: smallest value of `time_per_return`, in tau2, the period of the leading mode. time_per_return:
-    expected time per return, in tau2: the time between the last two returns, or `shortest` if it is longer. A
+    expected time per return, in tau2: the larger of `shortest` and the time between the last two returns. A
     slow-fast cycle may take many time constants of a leading mode that does not oscillate."""
 
     def __init__(self, shortest: float) -> None:
@@ -68,7 +68,7 @@ class ReturnDistances:
         self.restart(local_tolerance)
 
     def restart(self, local_tolerance: float) -> None:
-        """Starts the estimates again, for a new local tolerance of the integration."""
+        """Starts the estimates again, for the new local tolerance `local_tolerance` of the integration."""
         self.integration_error = INTEGRATION_SETTINGS.return_error_over_tolerance * local_tolerance
         self.are_integration_errors = False
         self.contraction_rate = 0.0
@@ -96,11 +96,11 @@ class ReturnDistances:
         if len(last_distances) == INTEGRATION_SETTINGS.min_count_of_distances_below_error and isfinite(
             self._last_above_error
         ):
-            # Distances that stay small are no coincidence, so the integration_error is smaller than assumed.
+            # Distances that stay small are no coincidence, so the integration error is smaller than assumed.
             reduction = max(last_distances) / self._last_above_error
             rate = reduction ** (period_ratio / len(self._below_error))
             self.contraction_rate = min(self.contraction_rate, rate)
-        limit = INTEGRATION_SETTINGS.max_integration_error_ratio * self.integration_error
+        limit = INTEGRATION_SETTINGS.max_ratio_due_to_integration_error * self.integration_error
         self._near_error = [*self._near_error, distance] if distance <= limit else []
         near = self._near_error[-INTEGRATION_SETTINGS.min_count_of_distances_below_error :]
         # The distances of a motion that approaches a cycle slowly decrease.

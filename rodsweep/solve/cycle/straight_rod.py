@@ -29,15 +29,16 @@ class StraightRodSettings:
 
     min_growth_rate_in_errors: float = 4.0
     """The sign of the growth rate Re w is certain if |Re w| exceeds this number times the error estimate of
-    the leading eigenvalue w. The task spectrum has the same criterion."""
+    the leading eigenvalue w, and `ROOT_SETTINGS.imaginary_axis_tolerance` times |w|. The task spectrum has
+    the same criterion."""
     accuracy: float = 1e-9
     """Relative accuracy of the leading eigenvalue."""
     followed_eigenvalue_counts: tuple[int, ...] = (6, 7, 15)
-    """Numbers of eigenvalues of a nonuniform arm that are followed along a chain of rods. The first number is
-    used with which a few values of the characteristic determinant prove at the first rod which eigenvalue
-    leads, else the smallest number: a count of the eigenvalues takes three times as long as this proof. Of 14
-    random arms, 10 need six eigenvalues, 3 need seven, and 1 needs twelve. Two cones need ten and fifteen;
-    with more eigenvalues than necessary the proof takes less time."""
+    """Numbers of eigenvalues of a nonuniform arm that are followed along a chain of rods. The numbers are
+    tried in this order, until a few values of the characteristic determinant prove at the first rod which
+    eigenvalue leads; without such a proof, the first number is used. A count of the eigenvalues takes three
+    times as long as this proof. Of 14 random arms, 10 need six eigenvalues, 3 need seven, and 1 needs twelve.
+    Two cones need ten and fifteen; with more eigenvalues than necessary the proof takes less time."""
 
 
 STRAIGHT_ROD_SETTINGS = StraightRodSettings()
@@ -184,8 +185,8 @@ def growth_rate_of_integrated_rod(
     rod: Rod, integrated_rod: Rod, straight: StraightRodStability, rate: float
 ) -> float:
     """Linear growth rate of the integrated rod `integrated_rod`, in 1/tau2, from its exact spectrum; `rate`,
-    of the rod `rod` with the stability `straight`, if both are equal or the spectrum is unknown. A stiff
-    matrix would give errors of 1e-4."""
+    the growth rate of the rod `rod` with the stability `straight`, if both rods are equal or the spectrum is
+    unknown. The growth rate by a stiff matrix would have an error of 1e-4."""
     if integrated_rod == rod:
         return rate
     return straight_rod_stability(integrated_rod, np.array([straight.w])).growth_rate(rate)

@@ -42,7 +42,7 @@ END_BY_STOP_REASON = {
     StopReason.no_further_solution: BautinEndReason.not_found,
     StopReason.max_solutions: BautinEndReason.list_full,
 }
-"""Bautin curve's end by `StopReason`, except `zero_margin`: an end of a parameter's range."""
+"""`BautinEndReason` by `StopReason`, without `zero_margin`, which means an end of a parameter's range."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,9 +71,9 @@ class BautinCurve:
 @dataclass(frozen=True, slots=True)
 class BautinProblem:
     """Problem for `follow_curve`: generalised Hopf points over three parameters. axes: these parameters, with
-    their ranges. rod: rod with all other parameters. third_parameter_values: values of the third parameter of
-    further points, (m,). landau_accuracy: relative accuracy of c. first_step_sign: sign of the first step
-    along the third parameter."""
+    their ranges. rod: rod with all other parameters. third_parameter_values: values of the third parameter at
+    which further points are solved, (m,). landau_accuracy: relative accuracy of c. first_step_sign: sign of
+    the first step along the third parameter."""
 
     rod: Rod
     axes: tuple[PlaneAxis, PlaneAxis, PlaneAxis]
@@ -82,8 +82,8 @@ class BautinProblem:
     first_step_sign: float = 1.0
 
     def as_curve_point(self, point: BautinPoint, index: int, value: float) -> BautinCurvePoint:
-        """`point` of the plane of both other parameters as a point of a curve. value: value of the parameter
-        of index `index`."""
+        """`point` of a plane of two parameters as a point of a curve. index, value: index and value of the
+        third parameter, which is constant in this plane."""
         values = np.insert(point.parameter_values, index, value)
         coordinates = [
             axis.scaled_coordinate(float(each)) for axis, each in zip(self.axes, values, strict=True)
@@ -100,18 +100,20 @@ class BautinProblem:
         """The generalised Hopf point near the coordinates `guess`, (4,), with the parameter of index
         `fixed_index` fixed; raises Unsolvable."""
         free = [i for i in range(3) if i != fixed_index]
-        values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
+        values = {
+            axis.parameter_name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)
+        }
         plane = ParameterPlane(self.rod.with_values(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = StabilityBoundary(plane, 0.0)
         accuracy = min(self.landau_accuracy, BAUTIN_POINT_SETTINGS.coarsest_accuracy)
         curve = HopfNormalForms(boundary, np.empty((0, 3)), accuracy)  # finds Hopf points only near a guess
         start = guess[[*free, 3]]
         point = self._zero_by_secants(curve, start, boundary.tangent(start))
-        return self.as_curve_point(point, fixed_index, values[self.axes[fixed_index].name])
+        return self.as_curve_point(point, fixed_index, values[self.axes[fixed_index].parameter_name])
 
     def step(self, previous: Sequence[BautinCurvePoint], length: float) -> StepResult[BautinCurvePoint]:
         """The next point, predicted along the last chord, at first along the third parameter; raises
-        Unsolvable. length: largest predicted change of a parameter, divided by its range."""
+        Unsolvable. previous: points so far. length: largest change of a parameter over its range."""
         v = previous[-1].scaled_point
         tangent = np.array([0.0, 0.0, self.first_step_sign, 0.0])
         if len(previous) > 1:
@@ -127,8 +129,9 @@ class BautinProblem:
         return StepResult(point, 0.0 if is_on_end or len(previous) == 1 else prediction_error, 1.0)
 
     def _point_cut_at_range_end(self, v: Array, change: Array) -> tuple[BautinCurvePoint, bool]:
-        """Returns (point near v + change, (4,), or on the end of a range that this step crosses; whether on
-        such an end). Parameters outside the ranges may not be allowed. Raises Unsolvable."""
+        """Returns (point near v + change, (4,), or on the end of a range that this step crosses; whether the
+        point lies on such an end). The step is cut because parameters outside the ranges may not be allowed.
+        Raises Unsolvable."""
         predicted = (v + change)[:3]
         range_ends = np.where(predicted > 1, 1.0, np.where(predicted < 0, 0.0, np.nan))
         fractions = (range_ends - v[:3]) / np.where(change[:3] == 0, 1.0, change[:3])
@@ -155,8 +158,8 @@ class BautinProblem:
         return outer
 
     def is_closed_by(self, previous: Sequence[BautinCurvePoint], point: BautinCurvePoint) -> bool:
-        """Whether the curve has more than `BAUTIN_SETTINGS.min_loop_points` points, and the first point of
-        the curve lies between its last point and `point`."""
+        """Whether the curve with the points `previous` has more than `BAUTIN_SETTINGS.min_loop_points`
+        points, and its first point lies between its last point and `point`."""
         first = previous[0].scaled_point
         last = previous[-1].scaled_point
         step_length = float(np.linalg.norm(point.scaled_point - previous[-1].scaled_point))
@@ -165,7 +168,8 @@ class BautinProblem:
 
     @staticmethod
     def _zero_by_secants(curve: HopfNormalForms, start: Array, direction: Array) -> BautinPoint:
-        """The point with Re c = 0 near start + s direction, (3,), by secant steps of s; raises Unsolvable."""
+        """The point with Re c = 0 near the line start + s direction, (3,), by secant steps of s; raises
+        Unsolvable."""
         # Secants, because the normal form does not give the derivatives of Re c.
         previous_s = 0.0
         s = BAUTIN_SETTINGS.first_secant_step

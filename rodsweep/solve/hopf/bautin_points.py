@@ -27,10 +27,11 @@ from .hopf_coefficients import HopfCoefficients, hopf_coefficients
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BautinPointSettings:
-    """Settings for the location of generalised Hopf points on a Hopf curve."""
+    """Settings for the location of generalised Hopf points on a Hopf curve. c: Landau coefficient."""
 
     coarsest_accuracy: float = 1e-10
-    """Coarsest relative accuracy of c for locating generalised Hopf points, themselves accurate to 1e-9."""
+    """Coarsest relative accuracy of c for locating generalised Hopf points; the points are then accurate to
+    1e-9."""
     first_sign_accuracy: float = 1e-5
     """Relative accuracy of c at first; if the sign of Re c is undecided, c is recomputed with the requested
     accuracy."""
@@ -51,8 +52,8 @@ class BautinPoint:
     """Generalised Hopf point: the point of a Hopf curve with Re c = 0.
 
     parameter_values, parameter_errors: values and absolute errors of both parameters of the plane. frequency
-    in 1/tau2, growth_slope = dw/dF in L^2/(k3 tau2), landau_imag = Im c in 1/(tau2 L^2). preceding_index:
-    index of the last stored point of the curve before this point.
+    in 1/tau2, growth_slope = dw/dF in L^2/(k3 tau2), landau_imag = Im c in 1/(tau2 L^2), c: Landau
+    coefficient. preceding_index: index of the last stored point of the curve before this point.
     """
 
     preceding_index: int
@@ -65,12 +66,13 @@ class BautinPoint:
 
 @dataclass(frozen=True, slots=True)
 class CurveCriticality:
-    """Signs of Re c along one Hopf curve, and the generalised Hopf points of this curve. criticality: sign of
-    Re c at every stored point, 0 if undecided, NaN if the normal form failed, (points,). points: generalised
-    Hopf points. unlocated_sign_change_count: number of sign changes without a located point."""
+    """Signs of Re c along one Hopf curve, c: Landau coefficient, and the generalised Hopf points of this
+    curve. criticality: sign of Re c at every stored point, 0 if undecided, NaN if the normal form failed,
+    (points,). bautin_points: generalised Hopf points. unlocated_sign_change_count: number of sign changes
+    without a located point."""
 
     criticality: Array
-    points: tuple[BautinPoint, ...]
+    bautin_points: tuple[BautinPoint, ...]
     unlocated_sign_change_count: int
 
 
@@ -89,11 +91,12 @@ class _NormalFormOnCurve:
 
 
 def curve_criticality(plane: ParameterPlane, curve: BoundaryCurve, accuracy: float) -> CurveCriticality:
-    """The sign of Re c at every stored point of the Hopf curve `curve`, 0 if it is undecided, and the
-    generalised Hopf points that are located between points of different sign.
+    """The sign of Re c at every stored point of the Hopf curve `curve` in the plane `plane`, 0 if undecided,
+    and the generalised Hopf points between points of opposite sign.
 
-    accuracy: relative accuracy of c, reduced to `BAUTIN_POINT_SETTINGS.coarsest_accuracy` if larger. If
-    the normal form fails at a point, the sign is NaN at this point only."""
+    accuracy: relative accuracy of the Landau coefficient c, reduced to
+    `BAUTIN_POINT_SETTINGS.coarsest_accuracy` if larger. If the normal form fails at a point, the sign is NaN
+    at this point only."""
     hopf_curve = HopfNormalForms(
         StabilityBoundary(plane, curve.double_eigenvalue_sign),
         curve.scaled_points,
@@ -200,7 +203,8 @@ class HopfNormalForms:
         self, hopf_point: _NormalFormOnCurve, index_before: int, position_error: Array
     ) -> BautinPoint:
         """The generalised Hopf point at `hopf_point`, with errors of both parameters. index_before: index of
-        the last stored point before it. position_error: error of the position along the chord, (3,)."""
+        the last stored point before this point. position_error: error of the position along the chord,
+        (3,)."""
         solution = hopf_point.boundary_point
         axes = self.boundary.plane.axes
         tangent = solution.tangent

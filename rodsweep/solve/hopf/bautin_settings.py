@@ -11,7 +11,7 @@ BAUTIN_STEP_CONTROL = StepControl(
     min_length=1e-4,
     max_prediction_error=0.2,
     max_angle=inf,
-    max_length_ratio=1.5,
+    max_successive_length_ratio=1.5,
     max_solutions=2000,
 )
 """Step length control along a curve. Each parameter's range has length 1; prediction errors are per step."""
@@ -22,7 +22,8 @@ class BautinSettings:
     """Settings of the corrector and of the ends of a curve of generalised Hopf points."""
 
     max_secant_steps: int = 10
-    """Maximum number of secant steps to a generalised Hopf point; beyond, the curve's step has failed."""
+    """Maximum number of secant steps to a generalised Hopf point; after more steps the step along the curve
+    has failed."""
     first_secant_step: float = 1e-3
     """First secant step along the Hopf curve; each parameter's range has length 1."""
     secant_tolerance: float = 1e-12
@@ -33,7 +34,8 @@ class BautinSettings:
     min_loop_points: int = 5
     """A curve can be recognised as closed only if it has more than this number of points."""
     same_point_distance: float = 1e-6
-    """Two points are identical if their coordinates (scaled parameters, log frequency) differ by less."""
+    """Two points are identical if their coordinates (scaled parameters, log frequency) differ by less than
+    this."""
 
 
 BAUTIN_SETTINGS = BautinSettings()

@@ -36,9 +36,9 @@ class Criticality:
 
 
 def solve_criticality(rod: Rod, request: ThresholdsRequest) -> Criticality:
-    """All Hopf points of `rod` for forces up to `request.F_max`, or to just below the crushing force if
-    smaller, and the coefficients of the first `request.max_thresholds` of these points. The force of `rod`
-    is ignored; a failure is returned as a status, never raised."""
+    """All Hopf points of `rod` for forces from 0 to `request.F_max`, or to just below a smaller crushing
+    force, with the coefficients of the first `request.max_thresholds` Hopf points. The force of `rod` is
+    ignored; a failure is returned as a status, never raised."""
     end = search_end_below_crushing(rod, request.F_max)
 
     def search() -> Criticality:
@@ -114,7 +114,7 @@ def _status_and_message(
     applies_by_status = {
         CriticalityStatus.ended_early: hopf_points.ended_early,
         CriticalityStatus.coefficients_failed: bool(failures),
-        CriticalityStatus.window_open: not math.isnan(hopf_points.open_range[0]),
+        CriticalityStatus.window_open: not math.isnan(hopf_points.range_of_further_crossings[0]),
         CriticalityStatus.list_full: len(hopf_points.thresholds) > request.max_thresholds,
         CriticalityStatus.sign_undecided: any(c.criticality == 0 for c in known_coefficients),
         CriticalityStatus.accuracy_not_reached: any(accuracy_texts),

@@ -1,11 +1,11 @@
 """Normal form coefficients of a Hopf point, with error estimates from two meshes and from the determinant D.
 
 The Landau coefficient c is computed on successively finer meshes, at least two. The value of the last mesh is
-stored, and its difference from the value of a mesh with the same elements of a lower order is the error
-estimate, which overestimates the error by some decades. The effects of rounding and of the error of the Hopf
-point are added. The slope dw/dF is the slope of the root of D, free of mesh error; its difference from the
-slope on the last mesh is the error estimate. For arms, the slope on the last mesh is stored, with its error
-estimated from the same two meshes as that of c.
+stored. The error estimate, some decades larger than the error, is the difference from the value of a mesh
+with the same elements of a lower order. The effects of rounding and of the error of the Hopf point are added.
+The slope dw/dF is the slope of the root of D, free of mesh error; its difference from the slope on the last
+mesh is the error estimate. For arms, the slope on the last mesh is stored, with its error estimated from the
+same two meshes as that of c.
 """
 
 import math
@@ -32,7 +32,8 @@ class HopfCoefficientSettings:
     order_increase: int = 4
     """Increase of the element order from the first mesh to the second: the error of c falls by 10 to 10^4."""
     max_finer_meshes: int = 5
-    """Maximum number of meshes after the first. A mesh with halved elements measures no error."""
+    """Maximum number of meshes after the first. The change of c to a mesh of halved elements is no error
+    estimate."""
     coarsest_accuracy: float = 1e-2
     """Coarsest relative accuracy for which the first mesh is chosen: the mesh must identify the
     eigenvalue."""
@@ -40,8 +41,9 @@ class HopfCoefficientSettings:
     """Relative rounding error of c, divided by the condition number of the eigenvalue. Most rods have 1e-15;
     the largest measured value is 9e-15, for nearly crushed rods that are soft in stretch and shear."""
     max_landau_force_sensitivity: float = 20.0
-    """Bound on |dc/dF|/|c|, divided by |w''|/|w'| + 1/|F| + 1/|k1 - F|. The largest measured value is 10, for
-    high modes of rods soft in shear; where a flutter window closes the value is 1."""
+    """Bound on |dc/dF|/|c|, divided by |w''|/|w'| + 1/|F| + 1/|Fc - F|; primes: d/dF, Fc: crushing force. The
+    largest measured value is 10, for high modes of rods soft in shear; where a flutter window closes the
+    value is 1."""
     relative_force_step: float = 1e-5
     """Force step of the difference quotient for the second derivative of w(F), divided by |F|."""
     max_cached_searches: int = 8
@@ -55,10 +57,9 @@ HOPF_COEFFICIENT_SETTINGS = HopfCoefficientSettings()
 class HopfCoefficients:
     """The normal form of one Hopf point, dZ/dt = growth_slope (F - F_H) Z + landau |Z|^2 Z, tip y = Re Z.
 
-    growth_slope in L^2/(k3 tau2), landau in 1/(tau2 L^2), with errors relative to their moduli;
-    amplitude_coefficient a in L, frequency_slope b in L^2/(k3 tau2), with errors relative to their values.
-    elements, order: number and order of the elements of the last mesh. If the computation failed, all
-    coefficients and errors are NaN, and `message` states the cause.
+    growth_slope in L^2/(k3 tau2), landau in 1/(tau2 L^2). amplitude_coefficient a in L, frequency_slope b in
+    L^2/(k3 tau2): defined in `NormalForm`. elements, order: number and order of the elements of the last
+    mesh. If the computation failed, all coefficients and errors are NaN, and `message` states the cause.
     """
 
     growth_slope: complex = complex(math.nan, math.nan)
@@ -121,7 +122,8 @@ def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoeffic
 def _form_and_changes(rod: Rod, w: complex, accuracy: float) -> tuple[NormalForm, float, float]:
     """Returns (normal form of the eigenvalue w on the last mesh, relative change of c from the mesh before,
     relative change of dw/dF). The changes are those of the last two meshes with the same elements. accuracy:
-    change of c at which the refinement ends, or at its rounding error."""
+    the refinement ends when the relative change of c is at most this number, or at most the rounding error of
+    c."""
     settings = HOPF_COEFFICIENT_SETTINGS
     # The worst-case factor of the mesh rule is not needed: here the second mesh measures the actual error.
     first_elements = elements_for_landau_coefficient(
@@ -160,8 +162,8 @@ def _coefficients_with_errors(
     normal: NormalForm, landau_error: float, slope_error: float, force_error: float
 ) -> HopfCoefficients:
     """The coefficients of the normal form `normal` and their relative errors, from three relative errors:
-    `landau_error` of c, `slope_error` of dw/dF, and `force_error` of F. Errors of a and b are infinite if
-    Re c = 0 after rounding, as it happens at a generalised Hopf point."""
+    `landau_error` of c, `slope_error` of dw/dF, and `force_error` of F. If Re c = 0 after rounding, as at a
+    generalised Hopf point, the errors of a and b are infinite."""
     c = normal.landau
     slope = normal.eigenvalue_slope
     absolute_slope_error = slope_error * abs(slope)

@@ -67,7 +67,7 @@ error of the mode would exceed the stated error of c."""
 
 
 HARMONIC_WAVE_NUMBER_RATIO = 2
-"""Wave number of h20 and h11, which determine c, divided by the wave number of q."""
+"""Wave number of h20 and h11, which are quadratic in q and determine c, divided by the wave number of q."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,12 +139,12 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
     )
     w, q, p = _eigenvalue_and_modes(transverse, guess)
     # The mode is transverse, so its quadratic fields are longitudinal: the opposite blocks are not needed.
-    h20 = -longitudinal.lu_factors(2j * w.imag).solve(form.bilinear_form(q, q))
+    h20 = -longitudinal.lu_factors(2j * w.imag).solve(form.bilinear_map(q, q))
     # Everything is real at the shift 0, but the solver is complex.
-    h11 = -longitudinal.lu_factors(0).solve(form.bilinear_form(q, q.conj())).real
-    c = np.vdot(p, form.bilinear_form(q.conj(), h20) / 2 + form.bilinear_form(q, h11))
+    h11 = -longitudinal.lu_factors(0).solve(form.bilinear_map(q, q.conj())).real
+    c = np.vdot(p, form.bilinear_map(q.conj(), h20) / 2 + form.bilinear_map(q, h11))
     if form.law_derivatives.is_nonlinear:
-        c += np.vdot(p, form.trilinear_form(q, q, q.conj())) / 2
+        c += np.vdot(p, form.trilinear_map(q, q, q.conj())) / 2
     slope = complex(np.vdot(p, form.times_force_derivative_of_A(q)))
     return NormalForm(form, transverse, w, slope, complex(c), q=q, p=p, h20=h20, h11=h11)
 
@@ -188,9 +188,9 @@ def elements_with_third_more_unknowns(elements: Elements) -> Elements:
 def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) -> NormalForm:
     """Normal form of the eigenvalue w of `rod` on the mesh `elements`.
 
-    Raises Unsolvable if the mesh has no eigenvalue equal to w within the larger of the relative accuracies
-    `accuracy` and `NORMAL_FORM_SETTINGS.converged_relative_shift_distance`, if the mesh has too many nodes,
-    or for the reasons of `normal_form`.
+    Raises Unsolvable if the mesh has too many nodes, if its nearest eigenvalue differs from w by more than
+    the relative accuracy `accuracy` (at least `NORMAL_FORM_SETTINGS.converged_relative_shift_distance`), or
+    for the reasons of `normal_form`.
     """
     node_count = elements.node_count
     max_node_count = (

@@ -22,7 +22,7 @@ class SubcriticalHopfSearchSettings:
     """Hopf points are searched from F/`max_hopf_force_ratio` to F times `max_hopf_force_ratio`, F: force of
     the rod."""
     landau_accuracy: float = 1e-3
-    """Relative accuracy of the coefficient c; only the sign and the first digits of c are needed."""
+    """Relative accuracy of the Landau coefficient c; only the sign and the first digits of c are needed."""
     max_unstable_cycle_y: float = 0.5
     """Hopf points are ignored if the largest tip y of their unstable cycle, in L, exceeds this number: the
     normal form is too inaccurate."""
@@ -45,10 +45,10 @@ def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
     """The subcritical Hopf point nearest to the force of `rod`; None if no candidate is subcritical, or if
     the force is not positive.
 
-    The candidates are the first Hopf point above and the first Hopf point below the force, within the factor
-    `max_hopf_force_ratio` of the settings, if the largest tip y of the unstable cycle by the normal form is
-    at most `max_unstable_cycle_y`. The straight rod must be stable. Raises Unsolvable if the search for Hopf
-    points or a coefficient fails.
+    The candidates are the first Hopf point above and the first Hopf point below the force, within a factor of
+    `max_hopf_force_ratio`. A candidate is ignored if, by the normal form, the largest tip y of its unstable
+    cycle exceeds `max_unstable_cycle_y`. The straight rod must be stable. Raises Unsolvable if the search for
+    Hopf points or a coefficient fails.
     """
     min_force = rod.F / SUBCRITICAL_HOPF_SEARCH_SETTINGS.max_hopf_force_ratio
     max_force = search_end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF_SEARCH_SETTINGS.max_hopf_force_ratio)

@@ -62,7 +62,7 @@ def converged_modes(
         mesh = replace(mesh, order=min(order, max_order))
         fine_modes = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
         result = _with_errors_from_coarse(coarse_modes, fine_modes)
-        error = max(result.errors_by_name().values())
+        error = max(result.relative_errors_by_name().values())
         # If a finer mesh does not halve the error, rounding errors dominate.
         has_improved = error < min_error / 2
         if best_modes is None or error < min_error:

@@ -38,7 +38,7 @@ class ModeVectors:
     left_modes: Complex
     """Left modes (Y+, Theta+) with Y+(1) = 1, in L and rad for a tip deflection L."""
     pairing: Complex
-    """(psi_n, xi_n) in the Gamma inner product, complex, (modes,)."""
+    """Gamma inner product (psi_n, xi_n) of the left mode psi_n and the right mode xi_n, complex, (modes,)."""
     condition: Array
     """Condition number |psi| |xi|/|(psi, xi)| >= 1, (modes,): largest ratio, to first order, of the change of
     an eigenvalue to the Gamma norm of a perturbation of the operator; inf where two eigenvalues merge. For
@@ -57,7 +57,7 @@ class ModeVectors:
         """The fields Y, Theta, h2, Pi, Y+ and Theta+, complex, (6, modes, points)."""
         return np.concatenate([self.right_modes, self.mode_strains, self.left_modes])
 
-    def errors_by_name(self) -> dict[str, float]:
+    def relative_errors_by_name(self) -> dict[str, float]:
         """Largest relative errors over all modes, by name ("modes", "condition numbers"); inf if unknown."""
         errors = {"modes": self.mode_error.max(), "condition numbers": self.condition_error.max()}
         return {name: inf if np.isnan(error) else float(error) for name, error in errors.items()}

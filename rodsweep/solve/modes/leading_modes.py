@@ -74,7 +74,7 @@ class Modes:
 
 
 def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
-    """The leading `request.modes` modes of a rod; a failure is returned as a status, never raised."""
+    """The leading `request.mode_count` modes of a rod; a failure is returned as a status, never raised."""
     if rod.is_uniform and not rod.is_uniform_and_linear:
         return _modes_by_equivalent_rod(rod, request)
     spectrum = solve_spectrum(rod, SpectrumRequest(request.mode_count, request.accuracy, request.certify))
@@ -125,8 +125,8 @@ def _modes_by_equivalent_rod(rod: Rod, request: ModesRequest) -> Modes:
 
 
 def _with_modes(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
-    """`outcome` with modes and, if requested, transient growth. The status changes if no mesh small enough
-    resolves the modes, or if the largest error exceeds the accuracy."""
+    """`outcome` with modes and, if requested, transient growth. The status changes if no mesh of an allowed
+    size resolves the modes, or if the largest error exceeds the accuracy."""
     spectrum = outcome.spectrum
     # The mesh must resolve the shortest wave of all modes.
     max_q = max(eigenfunction_wave_number(rod, complex(w)) for w in spectrum.eigenvalues)
@@ -140,7 +140,7 @@ def _with_modes(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
             "request fewer modes",
         )
     result = replace(outcome, mode_vectors=vectors)
-    errors = vectors.errors_by_name()
+    errors = vectors.relative_errors_by_name()
     if request.computes_growth:
         abs_w = float(abs(spectrum.eigenvalues[0]))
         settings = LEADING_MODE_SETTINGS
@@ -153,7 +153,7 @@ def _with_modes(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
         if is_growing or spectrum.unstable_count > 0:
             is_stable = False
         growth = converged_transient_growth(rod, mesh, request.accuracy, is_stable, abs_w)
-        errors |= growth.errors_by_name(abs_w)
+        errors |= growth.relative_errors_by_name(abs_w)
         # With the stability undecided, the growth may be infinite, so its error is unknown.
         result = replace(
             result, growth=growth if is_stable is not None else replace(growth, growth_error=nan)

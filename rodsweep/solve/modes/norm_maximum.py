@@ -74,7 +74,7 @@ def maximum_propagator_norm(
     times[[0, -1]] = time_range
     squared_norms, curvatures = _squared_norms_and_curvature_bounds(propagator, times)
     i = int(squared_norms.argmax())
-    maximum = _local_maximum(propagator, times[max(i - 1, 0)], times[min(i + 1, time_count - 1)])
+    maximum = _local_maximum_and_time(propagator, times[max(i - 1, 0)], times[min(i + 1, time_count - 1)])
     t = times[:-1]
     h = np.diff(times)
     left = squared_norms[:-1]
@@ -95,7 +95,7 @@ def maximum_propagator_norm(
         middle, middle_curvatures = _squared_norms_and_curvature_bounds(propagator, t + h)
         i = int(middle.argmax())
         if middle[i] > maximum[0] ** 2:
-            maximum = max(maximum, _local_maximum(propagator, t[i], t[i] + 2 * h[i]))
+            maximum = max(maximum, _local_maximum_and_time(propagator, t[i], t[i] + 2 * h[i]))
         t = np.concatenate([t, t + h])
         h = np.concatenate([h, h])
         left = np.concatenate([left, middle])
@@ -114,15 +114,15 @@ def _squared_norms_and_curvature_bounds(propagator: Propagator, times: Array) ->
 
 
 def _squared_norm_bound(h: Array, left: Array, right: Array, curvature: Array, abscissa: float) -> Array:
-    """Upper bound of N^2, N = |exp(L t)|, in intervals of width `h`, from N^2 at both ends, `left` and
-    `right`, and the curvature bound c at the left ends, `curvature`; all (intervals,). abscissa: upper bound,
-    at least 0, of the numerical abscissa."""
+    """Upper bound of N^2, N = |exp(L t)|, in intervals of time, (intervals,). h: widths of the intervals.
+    left, right: N^2 at both ends. curvature: curvature bound c at the left ends; all (intervals,). abscissa:
+    upper bound, at least 0, of the numerical abscissa."""
     growth = np.exp(np.minimum(2 * abscissa * h, NORM_MAXIMUM_SETTINGS.max_exponent))
     # Two bounds: growth at the rate of the abscissa, and the chord plus the largest curvature below it.
     return np.minimum(left * growth, np.maximum(left, right) + h**2 / 8 * curvature * growth)
 
 
-def _local_maximum(propagator: Propagator, low: float, high: float) -> tuple[float, float]:
+def _local_maximum_and_time(propagator: Propagator, low: float, high: float) -> tuple[float, float]:
     """Returns (|exp(L t)|, t) at a maximum between the times `low` and `high`: the zero of the derivative, by
     the Illinois regula falsi; the end with the larger norm if the derivatives show no maximum between the two
     times."""

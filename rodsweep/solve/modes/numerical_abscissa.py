@@ -7,10 +7,10 @@ import numpy as np
 
 from ...arrays import Array
 from ...determinant.arm.hull.hull import hull_of
-from ...determinant.certificate.eigenvalue_box import eigenvalue_box
+from ...determinant.certificate.box_of_all_eigenvalues import box_of_all_eigenvalues
 from ...discretization.straight.dense_eigenproblem import AnyPencil, dense_eigenproblem
 from ...discretization.straight.tip_layer import tip_angle_moment_ratio
-from ...model.adjoint import hermitian_tip_coefficients
+from ...model.adjoint_tip_conditions import hermitian_tip_coefficients
 from ...model.rod import Rod
 from .null_vectors import eigenvalue_rounding, factorised_pencil, null_vectors
 from .propagator import symmetrised_shifted_inverse
@@ -37,14 +37,14 @@ class NumericalAbscissaSettings:
 NUMERICAL_ABSCISSA_SETTINGS = NumericalAbscissaSettings()
 
 
-def numerical_abscissa(rod: Rod, pencil: AnyPencil, estimate: float = nan) -> tuple[float, float]:
+def numerical_abscissa_and_error(rod: Rod, pencil: AnyPencil, estimate: float = nan) -> tuple[float, float]:
     """Returns (abscissa, rounding error), in 1/tau2. abscissa: sup Re (xi, L xi)/(xi, xi) over the domain of
     the operator L, the largest growth rate at t = 0+, on the mesh of `pencil`. estimate: the abscissa on
     another mesh, NaN if unknown.
 
-    The largest eigenvalue of the Hermitian part (`rodsweep.model.adjoint`), approached by shifts from above.
-    nan if no shift lies above this eigenvalue, which is possible only for a rod without rotational drag and
-    with `Rod.g` < 0.
+    The abscissa is the largest eigenvalue of the Hermitian part of L
+    (`rodsweep.model.adjoint_tip_conditions`), which shifts approach from above. nan if no shift lies above
+    this eigenvalue, which is possible only for a rod without rotational drag and with `Rod.g` < 0.
     """
     settings = NUMERICAL_ABSCISSA_SETTINGS
     form = dense_eigenproblem(rod, pencil)
@@ -52,7 +52,7 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil, estimate: float = nan) -> tu
     B = form.B
     shift = _shift_above(estimate)
     if isnan(estimate):
-        bound, _ = eigenvalue_box(rod) if rod.is_uniform_and_linear else hull_of(rod).box()
+        bound, _ = box_of_all_eigenvalues(rod) if rod.is_uniform_and_linear else hull_of(rod).box()
         # Any shift above the abscissa is allowed; the bound of the eigenvalues is the first guess.
         shift = bound + 1 if bound < inf else rod.F**2 + 1
     for _ in range(settings.max_shifts):
@@ -76,7 +76,7 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil, estimate: float = nan) -> tu
 
 
 def _rayleigh_quotient_and_rounding(A: Array, B: Array, w: float) -> tuple[float, float]:
-    """Returns (eigenvalue of A - w diag(B) nearest to `w`, rounding error).
+    """Returns (eigenvalue of the pencil (A, diag(B)) nearest to `w`, rounding error), in 1/tau2.
 
     The error of the Rayleigh quotient is the rounding of the matrix alone; that of an eigenvalue of the
     inverse is up to 20 times larger.

@@ -21,8 +21,8 @@ class PropagatorSettings:
     """Settings for exp(L t) and for its representation by the leading modes."""
 
     zero_inverse_eigenvalue_ratio: float = 1e-12
-    """An eigenvalue of G = L^-1 whose modulus is at most this fraction of the largest modulus is treated as
-    0: the operator L then has an infinite eigenvalue."""
+    """An eigenvalue of G = (L - shift)^-1 whose modulus is at most this fraction of the largest modulus is
+    treated as 0: the operator L then has an infinite eigenvalue."""
     taylor_term_count: int = 16
     """Number of Taylor terms of exp for a matrix of norm 1/2; a multiple of 4."""
 
@@ -32,7 +32,7 @@ class PropagatorSettings:
         ):
             raise ValueError(
                 f"taylor_term_count = {self.taylor_term_count} is not allowed: it must be a multiple "
-                "of 4, and so large that the remainder of exp is below rounding error"
+                "of 4, and so large that the remainder of the Taylor series is below rounding error"
             )
 
 
@@ -127,7 +127,8 @@ class Propagator:
         )
 
     def norm_of_truncated_modes(self, m: int, time: float) -> float:
-        """|exp(L t) (P_k - P_m)|, of the modes m + 1 to k at `time`; m < k must not split a complex pair."""
+        """Norm |exp(L t) (P_k - P_m)| of the modes m + 1 to k at `time`, in tau2, k: number of leading modes
+        in use; m < k must not split a complex pair."""
         E = self.propagators_at(np.array([time]))[0]
         E[:m, :m] -= matrix_exponential(self.generator[:m, :m] * time) @ np.linalg.inv(self.overlap[:m, :m])
         return float(np.linalg.norm(E, 2))

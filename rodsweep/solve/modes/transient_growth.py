@@ -19,7 +19,7 @@ from ...discretization.straight.dense_eigenproblem import AnyPencil, dense_eigen
 from ...discretization.straight.transverse_mesh import AnyMesh, pencil_on
 from ...model.rod import Rod
 from .norm_maximum import NORM_MAXIMUM_SETTINGS, maximum_propagator_norm
-from .numerical_abscissa import numerical_abscissa
+from .numerical_abscissa import numerical_abscissa_and_error
 from .propagator import Propagator, symmetrised_shifted_inverse
 
 
@@ -27,7 +27,7 @@ from .propagator import Propagator, symmetrised_shifted_inverse
 class GrowthSettings:
     """Settings for the number of modes and the meshes from which the transient growth is computed."""
 
-    min_modes: int = 8
+    initial_mode_count: int = 8
     """Initial number of leading modes that represent exp(L t)."""
     mode_increase_fraction: float = 0.5
     """Relative increase of the number of modes if more modes are needed."""
@@ -68,7 +68,7 @@ class TransientGrowth:
     abscissa_error: float = nan
     """Absolute error of `numerical_abscissa`."""
 
-    def errors_by_name(self, abs_w: float) -> dict[str, float]:
+    def relative_errors_by_name(self, abs_w: float) -> dict[str, float]:
         """Relative errors of the growth and of the numerical abscissa, by name. The error of the abscissa is
         divided by the larger of |abscissa| and `abs_w`, in 1/tau2."""
         scale = max(abs(self.numerical_abscissa), abs_w)
@@ -94,7 +94,7 @@ def converged_transient_growth(
     rod is stable, None if undecided. The growth is inf for an unstable rod, NaN if undecided."""
     best_growth = UNKNOWN_GROWTH
     min_error = inf
-    abscissa, _ = numerical_abscissa(rod, pencil_on(mesh))
+    abscissa, _ = numerical_abscissa_and_error(rod, pencil_on(mesh))
     coarse_propagator = None
     for step in range(GROWTH_SETTINGS.max_finer_meshes):
         order = (
@@ -108,7 +108,7 @@ def converged_transient_growth(
             break
         pencil = pencil_on(mesh)
         previous_abscissa = abscissa
-        abscissa, rounding = numerical_abscissa(rod, pencil, previous_abscissa)
+        abscissa, rounding = numerical_abscissa_and_error(rod, pencil, previous_abscissa)
         abscissa_change = abs(abscissa - previous_abscissa) + rounding
         growth = GROWTH_BY_STABILITY[is_stable]
         # Without growth at t = 0+ there is no later growth: the norm of exp(L t) decreases from 1.
@@ -122,7 +122,7 @@ def converged_transient_growth(
             )
             coarse_propagator = fine_propagator
         result = replace(growth, numerical_abscissa=abscissa, abscissa_error=abscissa_change)
-        error = max(inf if isnan(error) else error for error in result.errors_by_name(abs_w).values())
+        error = max(inf if isnan(e) else e for e in result.relative_errors_by_name(abs_w).values())
         has_improved = error < min_error / 2
         if error < min_error or step == 0:
             best_growth = result
@@ -161,7 +161,7 @@ def transient_growth(
     maximum = (1.0, 0.0)
     upper_bound = 1.0
     later_excess = end_time = 0.0
-    mode_count = GROWTH_SETTINGS.min_modes
+    mode_count = GROWTH_SETTINGS.initial_mode_count
     while True:
         mode_count = fine.use_leading_modes(mode_count)
         # After this time the omitted modes have decayed to the accuracy; before, more modes are needed.

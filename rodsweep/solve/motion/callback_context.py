@@ -11,7 +11,7 @@ from ...discretization.explicit_system import ExplicitSystem
 from ...discretization.nodal_rod import NodalRod
 from ...model.compiled.compilation import compiled
 from ...model.material.jump import JUMP_SIDE_COLUMNS
-from ..backend.c_functions import double_array_at, doubles_at, integers_at
+from ..backend.petsc_c_functions import double_array_at, doubles_at, integers_at
 from .time_scheme import EXTRAPOLATION_POINTS
 
 MATERIAL_CONSTANTS_PER_JUMP_SIDE = len(JUMP_SIDE_COLUMNS)
@@ -91,7 +91,8 @@ OUTPUTS_OFFSET, MATRIX_STATE_OFFSET = (CONTEXT_FIELDS[name][1] for name in ("out
 """Offsets, in bytes, of the fields of `CONTEXT_DTYPE` into which PETSc's functions write."""
 
 UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
-"""Values of `matrix_due`: no new matrix, or one at the state `base` or at the current Newton iterate."""
+"""Values of `matrix_due`: no new matrix; a new matrix at the state `base`; one at the current Newton
+iterate."""
 
 
 def rod_arrays_by_field(system: ExplicitSystem) -> dict[str, Array]:

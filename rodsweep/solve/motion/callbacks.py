@@ -2,8 +2,8 @@
 
 numba compiles the functions (`cfunc`) and ctypes registers them in libpetsc: through Python, a Newton
 iteration of 5 us would take 200 us. PETSc passes each function one pointer, to a record of type
-`context.CONTEXT_DTYPE`. The memory of this record belongs to a `CallbackWorkspace`, which must outlive the
-TS.
+`callback_context.CONTEXT_DTYPE`. The memory of this record belongs to a `CallbackWorkspace`, which must
+outlive the TS.
 
 The equation is dz/dt - f(z) = 0, fully implicit. An additive splitting is slower: even if the full Jacobian
 of the step is implicit and only the remainder explicit, k1 Pi^2 forces 500 to 1500 steps per period.
@@ -18,7 +18,8 @@ from ...discretization.elements.mesh import Mesh
 from ...discretization.explicit_system import ExplicitSystem
 from ...discretization.state_layout import plane_layout
 from ...discretization.stress.rates import write_rate, write_rate_jacobian
-from ..backend.c_functions import (
+from ..backend.petsc import PETSc
+from ..backend.petsc_c_functions import (
     ADDRESS_TYPE,
     call_petsc,
     doubles_at,
@@ -26,7 +27,6 @@ from ..backend.c_functions import (
     petsc_callback,
     record_at,
 )
-from ..backend.petsc import PETSc
 from .callback_context import (
     AT_BASE,
     AT_ITERATE,
@@ -83,8 +83,8 @@ def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
 
 @petsc_callback(ADDRESS_TYPE, types.float64, ADDRESS_TYPE, ADDRESS_TYPE, ADDRESS_TYPE)
 def zero_explicit_part(ts: int, t: float, U: int, F: int, context: int) -> int:
-    """PETSc's explicit right-hand side F = 0: all of f is implicit. Without it, PETSc from 3.20 on treats the
-    rod as a differential-algebraic system, with an additional Newton solve in each step."""
+    """PETSc's explicit right-hand side F = 0: all of f is implicit. Without this function, PETSc from 3.20 on
+    treats the rod as a differential-algebraic system, with an additional Newton solve in each step."""
     c = record_at(context, CONTEXT_DTYPE)
     scratch = context + OUTPUTS_OFFSET
     get_array_for_writing(F, scratch)

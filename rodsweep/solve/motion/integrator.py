@@ -17,8 +17,8 @@ from ...arrays import Array
 from ...discretization.elements.mesh import Mesh
 from ...discretization.explicit_system import ExplicitSystem
 from ...discretization.state_layout import plane_layout
-from ..backend.c_functions import call_petsc
 from ..backend.petsc import PETSc
+from ..backend.petsc_c_functions import call_petsc
 from ..backend.solver_pools import LruPool
 from .callbacks import CallbackWorkspace
 from .step_record import end_step, pop_stored_steps
@@ -29,9 +29,9 @@ from .time_scheme import TimeScheme
 class IntegratorSettings:
     """Settings of the time integration: tolerances, limits, and the run in `relax_fast_components`."""
 
-    max_stagnant_newton_step_ratio: float = 1e-9
+    max_relative_stagnant_newton_step: float = 1e-9
     """Newton's method for a stage stops, as converged, if it stagnates at steps whose rms size, divided by
-    the largest component of the initial state, is below this."""
+    the largest component of the initial state, is at most this."""
     first_step_over_duration: float = 1e-3
     """Default first time step, as a fraction of the run's duration."""
     max_steps: int = 100_000
@@ -45,8 +45,8 @@ class IntegratorSettings:
     relaxation_steps_per_period: float = 1e5
     """Period divided by the first time step in `relax_fast_components`; fast components decay within ten
     steps."""
-    stored_relaxation_shortening: float = 100.0
-    """Shortening of both times if the motion is stored: 1e-3 periods cause errors of 1e-6 to 1e-5."""
+    relaxation_shortening_if_stored: float = 100.0
+    """Divisor of relaxation time and first step of a stored motion; a divisor of 1 causes errors of 1e-5."""
     relaxation_tolerance: float = 1e-3
     """Relative local error per time step in `relax_fast_components`."""
     max_pooled_integrators: int = 8
@@ -63,9 +63,9 @@ RELAXATION_SCHEME = TimeScheme(
 
 
 class EndReason(IntEnum):
-    """Reason why a run of the time integration ended. reached: end of the duration. stopped: the condition
-    `RunLimit.is_reached`. left_the_model: a stretch h1 <= 0. too_many_steps: `RunLimit.max_steps`. failed: an
-    error or a failed step of PETSc, or a state that is not finite."""
+    """Reason why a run of the time integration ended. reached: end of the duration. stopped: by the condition
+    `RunLimit.is_reached`. left_the_model: a stretch h1 <= 0. too_many_steps: `RunLimit.max_steps` steps.
+    failed: an error or a failed step of PETSc, or a state that is not finite."""
 
     reached = 0
     stopped = 1
@@ -171,7 +171,7 @@ class Integrator:
         ts.setTolerances(rtol=0.0, atol=scheme.tolerance * state_size)
         tolerance = scheme.newton_tolerance_ratio * scheme.tolerance * state_size
         self.workspace.set_rod_and_tolerances(
-            system, tolerance, INTEGRATOR_SETTINGS.max_stagnant_newton_step_ratio * state_size
+            system, tolerance, INTEGRATOR_SETTINGS.max_relative_stagnant_newton_step * state_size
         )
         ts.setTime(0.0)
         ts.setStepNumber(0)
@@ -237,8 +237,8 @@ def destroy_integrators() -> None:
 
 
 def relax_fast_components(system: ExplicitSystem, z: Array, period: float, shortening: float = 1.0) -> Array:
-    """The state, (unknowns,), a thousandth of `period`/shortening after the state z, (unknowns,), when the
-    fast components of z have decayed.
+    """The state, (unknowns,), that the rod reaches from the state z, (unknowns,), after a thousandth of
+    `period`/`shortening`, in tau2, when the fast components of z have decayed.
 
     A scaled or interpolated state has rates of 1e10/tau2 in the components with the fast relaxation due to
     k1, k2 and 1/gamma3. The explicit first stage of ARKIMEX does not damp these components at any step

@@ -9,9 +9,9 @@ from ...determinant.exponents import EXPONENT_SETTINGS
 from ...discretization.explicit_system import ExplicitSystem
 
 MAX_DEFLECTION_PER_TIP_DEFLECTION = 2.0
-"""Largest deflection |y| along the rod of a mode, in L, if its tip deflects by 1. The tip of an arm may be at
-rest in a mode: with a heavy tip, for example, at a single force. A mode scaled by its tip is then no small
-disturbance of the rod."""
+"""Upper limit of the deflection |y| along the rod, in L, of a mode scaled to a tip deflection of 1. The tip
+of an arm may be at rest in a mode: with a heavy tip, for example, at a single force. A mode scaled by its tip
+is then no small disturbance of the rod."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,7 @@ class LeadingMode:
     mode: Complex
 
     def state(self, tip_y: float) -> Array:
-        """State of the rod, (unknowns,), at the tip deflection `tip_y`, in L, of the mode's real part."""
+        """The real part of the mode, (unknowns,), scaled to the tip deflection `tip_y`, in L."""
         return tip_y * self.mode.real
 
     @property
@@ -45,7 +45,7 @@ def leading_mode(system: ExplicitSystem) -> LeadingMode:
     z = np.zeros(layout.unknown_count, complex)
     layout.transverse_unknowns(z)[:] = vectors[:, leading_index]
     # y is linear in z about the straight rod, so the 'velocity' along z is the deflection.
-    real, imag = (system.transverse_velocities(rest_state, part) for part in (z.real, z.imag))
+    real, imag = (system.y_velocities(rest_state, part) for part in (z.real, z.imag))
     tip = complex(real[-1], imag[-1])
     min_tip = float(np.hypot(real, imag).max()) / MAX_DEFLECTION_PER_TIP_DEFLECTION
     # A tip near a node of the mode would scale the deflection elsewhere without limit.

@@ -10,7 +10,7 @@ from llvmlite import binding
 from numba import types
 from numba.core import typing
 
-from ..backend.c_functions import ADDRESS_TYPE, PETSC_INT_TYPE, PETSC_LIBRARY
+from ..backend.petsc_c_functions import ADDRESS_TYPE, PETSC_INT_TYPE, PETSC_LIBRARY
 
 PETSC_ENUM_TYPE = types.int32
 

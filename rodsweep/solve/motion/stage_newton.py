@@ -17,7 +17,7 @@ from ...arrays import Array
 from ...discretization.stress.rates import write_rate
 from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
-from ..backend.c_functions import (
+from ..backend.petsc_c_functions import (
     ADDRESS_TYPE,
     PETSC_INT_TYPE,
     as_void_pointer,
@@ -62,12 +62,12 @@ class StageNewtonSettings(KernelConstants):
     min_contraction_for_new_matrix: float = 0.3
     """If the contraction exceeds this, a new matrix is computed at the current iterate."""
     min_stagnant_contraction: float = 0.5
-    """If the contraction exceeds this and Newton steps are rounding, the iteration ends as converged."""
+    """If the contraction exceeds this and the step is rounding error, the iteration ends as converged."""
     min_contraction_of_growing_step: float = 2.0
     """A Newton step is growing if the contraction exceeds this."""
     max_growing_steps: int = 2
     """Number of successive growing Newton steps after which the iteration has failed."""
-    min_contraction_ratio: float = 0.3
+    min_new_over_stored_contraction: float = 0.3
     """Smallest ratio of the new contraction to the stored contraction, so that one exceptionally small step
     does not reduce the stored contraction too much."""
     first_iteration_safety_factor: float = 3.0
@@ -107,8 +107,8 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
     # The first iteration of a stage has no previous step.
     theta = dx / c.last_step if iteration > 1 and c.last_step > 0 else 0.0
     if iteration > 1:
-        min_contraction = STAGE_NEWTON_SETTINGS.min_contraction_ratio * c.contraction if c.measured else 0.0
-        c.contraction = max(min_contraction, theta)
+        stored = c.contraction if c.measured else 0.0
+        c.contraction = max(STAGE_NEWTON_SETTINGS.min_new_over_stored_contraction * stored, theta)
         c.measured = 1
     c.growing = c.growing + 1 if theta > STAGE_NEWTON_SETTINGS.min_contraction_of_growing_step else 0
     c.last_step = dx

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
-from ..backend.c_functions import ADDRESS_TYPE, doubles_at, integers_at, petsc_callback, record_at
+from ..backend.petsc_c_functions import ADDRESS_TYPE, doubles_at, integers_at, petsc_callback, record_at
 from .callback_context import (
     AT_BASE,
     CONTEXT_DTYPE,
@@ -45,7 +45,8 @@ class StagePredictorSettings(KernelConstants):
     last step. With 1, no growing step would be extrapolated: Newton's method would stop too early at PETSc's
     prediction, with errors of a motion five times as large."""
     matrix_time_fraction: float = 0.5
-    """Time at which the state for Newton's matrix is predicted, in steps; 0 for methods of a single stage."""
+    """Time at which the state for Newton's matrix is predicted, as a fraction of the step. TS types other
+    than arkimex take the state at the start of the step."""
     field_ranges: ClassVar = {"max_extrapolated_step_ratio": (1.0, inf)}
     """Exclusive bounds (lower, upper) of a field, by name of the field."""
 

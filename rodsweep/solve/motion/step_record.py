@@ -1,4 +1,4 @@
-"""Storage of the time steps of a run in compiled code: Python calls would take 1/7 of the time."""
+"""Storage of the time steps of a run in compiled code: Python calls would take 1/7 of the computing time."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -8,8 +8,8 @@ import numpy as np
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
-from ..backend.c_functions import ADDRESS_TYPE, doubles_at, integers_at, petsc_callback, record_at
 from ..backend.petsc import PETSc
+from ..backend.petsc_c_functions import ADDRESS_TYPE, doubles_at, integers_at, petsc_callback, record_at
 from .callback_context import CONTEXT_DTYPE, OUTPUTS_OFFSET
 from .petsc_calls import (
     context_of_ts,

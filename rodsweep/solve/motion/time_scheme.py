@@ -57,13 +57,13 @@ class TimeScheme:
 
     def petsc_options(self, used_type: str) -> dict[str, str]:
         """PETSc options of this scheme, without prefix. used_type: TS type in use, which a user may have set
-        in place of `self.ts_type`; options of another TS type leave out `ts_sub_type`."""
+        in place of `self.ts_type`; `ts_sub_type` is then left out."""
         name_option = {"bdf": "order"}.get(used_type, "type")
         options = {"ts_type": self.ts_type}
         if used_type == self.ts_type and self.ts_sub_type:
             options[f"ts_{used_type}_{name_option}"] = self.ts_sub_type
         if used_type == "arkimex":
-            # PETSc extrapolates for the types without extrapolation points of ours.
+            # PETSc extrapolates the stages of the types that are not in `EXTRAPOLATION_POINTS`.
             by_petsc = "false" if self.ts_sub_type in EXTRAPOLATION_POINTS else "true"
             options |= {
                 "ts_arkimex_fully_implicit": "true",

@@ -25,7 +25,7 @@ from ...discretization.explicit_system import ExplicitSystem
 class TipTargetSettings:
     """Settings of the rod that is bent until its tip is at a given point."""
 
-    max_tip_distance_over_length: float = 0.98
+    max_clamp_distance_over_length: float = 0.98
     """Largest distance of the tip from the clamp, divided by the straight length: at 1 the rod cannot be
     bent."""
     start_tip_angle: float = 0.8
@@ -34,13 +34,15 @@ class TipTargetSettings:
     first_target_step_fraction: float = 0.1
     """First step of the target, as a fraction of the path of targets."""
     min_target_step_fraction: float = 1e-3
-    """If a step of the target, as a fraction of the path, is smaller, the search ends at the last target."""
+    """If a step of the target, as a fraction of the path, is at most this, the search ends at the last target
+    reached."""
     max_newton_iterations: int = 12
     """Maximum number of Newton iterations for one target."""
     target_tolerance: float = 1e-10
     """Tolerance of Newton's method: distance of the tip from its target, in L."""
     max_rotation_per_newton_step: float = 1.0
-    """Newton's method fails if a step turns theta by more, in rad: it may lead to another shape."""
+    """Newton's method fails if a step turns theta by more than this, in rad: such a step may lead to another
+    shape."""
 
 
 TIP_TARGET_SETTINGS = TipTargetSettings()
@@ -48,7 +50,7 @@ TIP_TARGET_SETTINGS = TipTargetSettings()
 
 def bent_state_with_tip_at(system: ExplicitSystem, x: float, y: float) -> Array:
     """The state z, (unknowns,), of the rod bent until the tip is at (x, y), in L. A target beyond
-    `TipTargetSettings.max_tip_distance_over_length` is moved towards the clamp. If Newton's method fails on
+    `TipTargetSettings.max_clamp_distance_over_length` is moved towards the clamp. If Newton's method fails on
     the path of targets, the state for the last target reached is returned."""
     bending = _BentRod(system)
     sign_of_y = -1.0 if y < 0 else 1.0
@@ -58,7 +60,7 @@ def bent_state_with_tip_at(system: ExplicitSystem, x: float, y: float) -> Array:
     start_radius_and_angle = np.array([hypot(*first_tip), atan2(first_tip[1], first_tip[0])])
     # At a distance equal to its length the rod would be straight, and the force not determined.
     end_radius_and_angle = np.array(
-        [min(hypot(x, y), TIP_TARGET_SETTINGS.max_tip_distance_over_length * bending.length), atan2(y, x)]
+        [min(hypot(x, y), TIP_TARGET_SETTINGS.max_clamp_distance_over_length * bending.length), atan2(y, x)]
     )
     force: Array = np.zeros(2)
     solved_fraction = 0.0

@@ -56,7 +56,7 @@ class CoefficientTails:
 
 def coefficient_tails_of(orbit: Orbit) -> CoefficientTails:
     """Tails of `orbit` in space and in time, and decay of its coefficients in space."""
-    coefficients = coefficients_of_elements(orbit)
+    coefficients = largest_coefficients_of_elements(orbit)
     scales = np.max([c.max(axis=1) for c in coefficients], axis=0)
     # Two coefficients, because the last coefficient may vanish by parity.
     end_norms = np.max([np.hypot(c[:, -1], c[:, -2]) for c in coefficients], axis=0)
@@ -96,9 +96,9 @@ def _coefficient_log_decay_per_order(c: Array) -> float:
     )
 
 
-def coefficients_of_elements(orbit: Orbit) -> list[Array]:
-    """Largest moduli of the Legendre coefficients in space of n1, n2 and m3 of each element over the ends of
-    all time intervals, (3, p + 1) each, p: order of the element."""
+def largest_coefficients_of_elements(orbit: Orbit) -> list[Array]:
+    """For each element, the Legendre coefficients in space of n1, n2 and m3: the largest moduli over the ends
+    of all time intervals, (3, p + 1), p: order of the element."""
     end_states = np.ascontiguousarray(orbit.stage_states[:, -1])
     return [
         largest_coefficients_over_states(values, _analysis_matrix_on_element(values.shape[2] - 1))
@@ -134,8 +134,8 @@ def largest_coefficients_over_states(values: Array, analysis: Array) -> Array:
 
 
 def smooth_space_and_time_tails(orbit: Orbit) -> Array:
-    """Tails in space and in time, (2,), each divided by the largest value of the field: the largest of
-    `smooth_element_and_time_tails`, and the tail in time."""
+    """Tails in space and in time, (2,), each divided by the largest value of the field: the largest tail of
+    an element by `smooth_element_and_time_tails`, and the tail in time."""
     tails = smooth_element_and_time_tails(orbit)
     return np.array([tails[:-1].max(), tails[-1]])
 
@@ -208,8 +208,8 @@ def time_tails_of_intervals(orbit: Orbit) -> Array:
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)
 def _last_coefficient_weights(stage_count: int) -> Array:
-    """Weights, (s + 1,), with which the values at the start and the stages of an interval give its last
-    Legendre coefficient."""
+    """Weights, (s + 1,), s = `stage_count`, with which the values at the start and the stages of an interval
+    give its last Legendre coefficient."""
     nodes: Array = np.append(0.0, radau_method(stage_count).nodes)
     row: Array = legendre_analysis_matrix(2 * nodes - 1)[-1]
     return row

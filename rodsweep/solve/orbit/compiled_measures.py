@@ -45,8 +45,8 @@ class TipPath(NamedTuple):
 
     strains_and_rates: (h1, h2, Pi) at the nodes of every element, and the derivatives of these strains with
     respect to the mesh time in periods, for the solved states, (2, 3, K, nodes + elements). tip_coefficients:
-    the `count` Fourier coefficients of (x, y, theta) of the tip, (count, 3). tip_samples: (x, y, theta) at
-    equidistant mesh times of the period, (`TIP_EXTREMUM_SETTINGS.samples_per_time_node` (count - 1), 3).
+    Fourier coefficients of (x, y, theta) of the tip, (count, 3). tip_samples: (x, y, theta) at equidistant
+    mesh times of the period, (`TIP_EXTREMUM_SETTINGS.samples_per_time_node` (count - 1), 3).
     least_tip_values, largest_tip_values: smallest and largest (x, y, theta), (3,)."""
 
     strains_and_rates: Array
@@ -56,7 +56,7 @@ class TipPath(NamedTuple):
     largest_tip_values: Array
 
 
-class PowerMeansAndLeastStretch(NamedTuple):
+class MeanPowersAndLeastStretch(NamedTuple):
     """Means and rms fluctuations of the powers over a period, and the smallest h1; names
     and units as in `CycleMeasures`."""
 
@@ -115,9 +115,9 @@ def write_node_stresses(states: Array, out: Array) -> None:
 
 
 @compiled_with_reordered_sums
-def power_means_and_least_stretch(
+def mean_powers_and_least_stretch(
     stages: Array, weights: Array, p: OrbitEquations
-) -> PowerMeansAndLeastStretch:
+) -> MeanPowersAndLeastStretch:
     """Means and rms deviations of the powers over a period, and the smallest h1 at the nodes and stages.
     stages: states at the stages, (K, s, n). weights: quadrature weights of the stages, (s,). p: equations of
     the orbit."""
@@ -147,7 +147,7 @@ def power_means_and_least_stretch(
                     states[i], p.rod.jump_nodes[j], p.rod.jump_side_coefficients[j], p.rod
                 ),
             )
-    return PowerMeansAndLeastStretch(mean[0], np.sqrt(square[0]), mean[1], np.sqrt(square[1]), stretch)
+    return MeanPowersAndLeastStretch(mean[0], np.sqrt(square[0]), mean[1], np.sqrt(square[1]), stretch)
 
 
 @compiled_with_reordered_sums

@@ -9,7 +9,7 @@ from ...discretization.nodal_rod import NodalRod
 
 class OrbitEquations(NamedTuple):
     """Data of the equations of an orbit: rod and mesh in space, collocation in time, closing condition x(T/p)
-    = S x(0).
+    = S x(0), x: state, T: period.
 
     mass_diagonal: diagonal of the mass matrix, (n,). stage_differentiation_matrix: differentiation matrix of
     the collocation, (s, s + 1). time_interval_lengths: lengths of the time intervals, with sum 1, (K,).

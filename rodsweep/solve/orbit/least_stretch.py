@@ -37,9 +37,9 @@ LEAST_STRETCH_SETTINGS = LeastStretchSettings()
 
 
 def least_stretch_between_nodes(motion: "CycleMotion", nodal_minimum: float) -> float:
-    """Smallest h1 of a cycle over rod and period: the smallest nodal value `nodal_minimum` if it exceeds
-    `safe_nodal_stretch`, else the smallest sampled value if it exceeds `safe_sampled_stretch`, else the
-    minimum found by a search around the position of the smallest sampled value.
+    """Smallest h1 of a cycle over rod and period. nodal_minimum: smallest h1 at the nodes, which is returned
+    if it exceeds `safe_nodal_stretch`. Otherwise h1 is sampled between the nodes; if the smallest sample is
+    at most `safe_sampled_stretch`, a search around its position follows.
     """
     # Negated, so that nan is returned without a search.
     if not nodal_minimum <= LEAST_STRETCH_SETTINGS.safe_nodal_stretch:
@@ -49,7 +49,8 @@ def least_stretch_between_nodes(motion: "CycleMotion", nodal_minimum: float) -> 
 
 def least_stretch(motion: "CycleMotion", safe_stretch: float = inf) -> float:
     """Smallest h1 of a cycle over the whole rod and the whole period. safe_stretch: a smallest sampled value
-    above `safe_stretch` is returned without a search between the sampled positions."""
+    above `safe_stretch` is returned without a search between the sampled positions; by default the search is
+    always made."""
     from scipy.optimize import minimize_scalar  # slow import: 0.1 s, for few runs
 
     form = motion.orbit.form

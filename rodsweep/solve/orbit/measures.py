@@ -1,9 +1,9 @@
 """Measures of a cycle: extrema, harmonics, energy budget, path of the tip and shapes of the rod.
 
-At the starts of all intervals except the last, which are equidistant in mesh time, strains and strain rates
-have the full order of the collocation. The trigonometric polynomial in mesh time through strains and strain
-rates converges spectrally; extrema are computed from this polynomial. Means are integrals by the quadrature
-of the collocation.
+The starts of all intervals except the last are equidistant in mesh time. At these starts strains and strain
+rates have the full order of the collocation. The trigonometric polynomial in mesh time through strains and
+strain rates converges spectrally; extrema are computed from this polynomial. Means are integrals by the
+quadrature of the collocation.
 """
 
 from dataclasses import dataclass, field
@@ -69,7 +69,8 @@ class CycleMeasures:
 class CycleMotion:
     """Motion of `orbit` over its whole period, as trigonometric polynomials. tip_samples: (x, y, theta) of
     the tip at equidistant times of the period, (m, 3). last_tip_coefficients: Fourier coefficients of (x, y,
-    theta) in mesh time, (count, 3), whose size measures the error of the polynomials."""
+    theta) in mesh time, (count, 3); the size of the last coefficients measures the error of the
+    polynomials."""
 
     def __init__(self, orbit: Orbit) -> None:
         self.orbit = orbit
@@ -89,7 +90,7 @@ class CycleMotion:
     def _solved_parts_per_period(self) -> int:
         return self.orbit.symmetry.solved_parts_per_period
 
-    def _time_from_mesh_time_coefficients(self, c: Complex) -> Complex:
+    def _coefficients_in_time(self, c: Complex) -> Complex:
         """Fourier coefficients in time from Fourier coefficients c in mesh time, (count, ...)."""
         return fourier_coefficients_in_time(c, self.orbit.grading, self._solved_parts_per_period)
 
@@ -107,9 +108,7 @@ class CycleMotion:
         K, size = self._path.strains_and_rates.shape[2:]
         values, slopes = self._path.strains_and_rates.swapaxes(1, 2).reshape(2, K, 3 * size)
         signs = np.repeat(REFLECTION_SIGNS if self.orbit.is_symmetric else np.zeros(3), size)
-        c = self._time_from_mesh_time_coefficients(
-            hermite_fourier_coefficients_of_columns(values, slopes, signs)
-        )
+        c = self._coefficients_in_time(hermite_fourier_coefficients_of_columns(values, slopes, signs))
         return c.reshape(len(c), 3, size)
 
     @property
@@ -124,15 +123,13 @@ class CycleMotion:
         squared moduli over the nodes of all elements."""
         values, slopes = self._path.strains_and_rates[:, 2]
         signs = np.full(values.shape[1], REFLECTION_SIGNS[2] * self.orbit.is_symmetric)
-        c = self._time_from_mesh_time_coefficients(
-            hermite_fourier_coefficients_of_columns(values, slopes, signs)
-        )
+        c = self._coefficients_in_time(hermite_fourier_coefficients_of_columns(values, slopes, signs))
         sizes: Array = np.linalg.norm(c[1:], axis=1)
         return sizes
 
     def tip_x_y_theta_from_orbit_start(self, sample_count: int) -> Array:
         """(x, y, theta) of the tip at `sample_count` equidistant times of a period from the start of the
-        orbit, (count, 3)."""
+        orbit, (samples, 3)."""
         return series_samples(self.tip_coefficients, sample_count)
 
     @cached_property
@@ -169,19 +166,19 @@ class CycleMotion:
         return int(self.tip_samples[:, 1].argmax()) / len(self.tip_samples)
 
     @cached_property
-    def mean_crossing_time(self) -> float:
+    def tip_y_mean_crossing_time(self) -> float:
         """Time at which the tip's y rises through its mean, counted from the start of the orbit, in
         periods."""
         return time_of_rise_through_mean(self.tip_samples[:, 1])
 
     def tip_x_y_theta_from_mean_crossing(self, sample_count: int) -> Array:
-        """(x, y, theta) of the tip at `sample_count` equidistant times of a period from `mean_crossing_time`,
-        (3, samples)."""
+        """(x, y, theta) of the tip at `sample_count` equidistant times of a period from
+        `tip_y_mean_crossing_time`, (3, samples)."""
         return self._series_from_mean_crossing(self.tip_coefficients, sample_count).T
 
     def energy_and_powers_from_mean_crossing(self, sample_count: int) -> Array:
-        """(elastic energy U, injected power, dissipated power) at `sample_count` equidistant times of a
-        period from `mean_crossing_time`, (3, samples)."""
+        """(elastic energy U in k3/L, injected power, dissipated power, both in k3/(L tau2)) at `sample_count`
+        equidistant times of a period from `tip_y_mean_crossing_time`, (3, samples)."""
         period = self.orbit.period
         # Factors of the time derivative of Fourier coefficients.
         derivative_factors = 2j * np.pi / period * np.arange(len(self.tip_coefficients))
@@ -199,7 +196,7 @@ class CycleMotion:
             # Energy and power are even under the reflection, so they repeat after half a period.
             U = np.tile(U, 2)
             energy_rates = np.tile(energy_rates, 2)
-        c = self._time_from_mesh_time_coefficients(hermite_fourier_coefficients(U, energy_rates))
+        c = self._coefficients_in_time(hermite_fourier_coefficients(U, energy_rates))
         U, energy_rate = self._series_from_mean_crossing(
             np.stack([c, derivative_factors[: len(c)] * c], axis=1), sample_count
         ).T
@@ -207,8 +204,8 @@ class CycleMotion:
         return np.stack([U, injection, injection - energy_rate])
 
     def shapes_from_mean_crossing(self, time_count: int, node_count: int) -> Array:
-        """(x, y, theta) of the rod at `time_count` equidistant times of a period from `mean_crossing_time`
-        and at `node_count` Lobatto nodes, (3, count, nodes)."""
+        """(x, y, theta) of the rod at `time_count` equidistant times of a period from
+        `tip_y_mean_crossing_time` and at `node_count` Lobatto nodes, (3, times, nodes)."""
         strains = self._series_from_mean_crossing(self.strain_coefficients, time_count).swapaxes(0, 1)
         mesh = self.orbit.form.mesh
         return shape_from_strains(
@@ -217,8 +214,8 @@ class CycleMotion:
 
     def _series_from_mean_crossing(self, c: Complex, sample_count: int) -> Array:
         """Re sum_k c_k exp(2 pi i k t) at `sample_count` equidistant times t of a period from
-        `mean_crossing_time`, (count, ...). c: Fourier coefficients c_k, (coefficients, ...)."""
-        phase_factors = np.exp(2j * np.pi * self.mean_crossing_time * np.arange(len(c)))
+        `tip_y_mean_crossing_time`, (samples, ...). c: Fourier coefficients c_k, (coefficients, ...)."""
+        phase_factors = np.exp(2j * np.pi * self.tip_y_mean_crossing_time * np.arange(len(c)))
         return series_samples(c * phase_factors.reshape(-1, *(1,) * (c.ndim - 1)), sample_count)
 
 
@@ -233,7 +230,7 @@ def measures_of(motion: CycleMotion) -> CycleMeasures:
     """Scalar measures and harmonics of the orbit of `motion`."""
     orbit = motion.orbit
     tip_y_coefficients = motion.tip_coefficients[:, 1]
-    means = orbit.power_means_and_least_stretch
+    means = orbit.mean_powers_and_least_stretch
     return CycleMeasures(
         period=orbit.period,
         frequency=2 * np.pi / orbit.period,

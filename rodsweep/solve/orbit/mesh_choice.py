@@ -7,7 +7,7 @@ import numpy as np
 
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS
 from .coefficient_tails import coefficient_tails_of, time_tails_of_intervals
-from .element_order_ratios import element_order_ratios
+from .element_order_choice import element_order_ratios
 from .node_spacing_of_arm import with_node_spacing_of_arm
 from .orbit import Orbit, time_interval_lengths
 from .orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh, mesh_of_orbit
@@ -23,9 +23,10 @@ def cheapest_stage_count(accuracy: float) -> int:
 
 def mesh_from_coefficient_tails(orbit: Orbit, accuracy: float, stage_count: int) -> OrbitMesh:
     """The coarsest mesh with `stage_count` stages that is expected to reach the relative accuracy `accuracy`,
-    from the tails of the nearby orbit `orbit`; by `ORBIT_MESH_SETTINGS` not coarser than `min_element_order`
-    and `min_time_interval_count`, and finer than the mesh of `orbit` at most by `max_element_order_increase`
-    and `max_time_interval_count_ratio`."""
+    from the tails of the nearby orbit `orbit`. The order is at least `min_element_order`, and at most the
+    order of `orbit` plus `max_element_order_increase`; the interval count is at least
+    `min_time_interval_count`, and at most that of `orbit` times `max_time_interval_count_ratio`
+    (`ORBIT_MESH_SETTINGS`)."""
     orbit = with_node_spacing_of_arm(orbit)
     current_mesh = mesh_of_orbit(orbit)
     tails = coefficient_tails_of(orbit)
@@ -65,7 +66,7 @@ def grading_and_interval_count_ratio(
     orbit: Orbit, max_tail: float, stage_count: int
 ) -> tuple[TimeGrading, float]:
     """Returns (grading, ratio): the grading of the time intervals that needs the fewest intervals, and the
-    ratio of this number to the present number of `orbit`. max_tail: largest allowed tail in time.
+    ratio of this number to the number of intervals of `orbit`. max_tail: largest allowed tail in time.
     stage_count: number of stages of an interval."""
     # For a different number of stages the tail in an interval is about a power of the known tail.
     tails = np.maximum(time_tails_of_intervals(orbit), ORBIT_MESH_SETTINGS.min_coefficient_tail) ** (
@@ -88,7 +89,7 @@ def grading_and_interval_count_ratio(
 
 def coarser_regraded_mesh(mesh: OrbitMesh, orbit: Orbit) -> OrbitMesh:
     """`mesh` with the best grading of the time intervals for the solved `orbit` and fewer intervals; `mesh`
-    itself if its grading, that of `orbit`, is almost as good."""
+    itself if its grading, which is also the grading of `orbit`, is almost as good."""
     stage_count = orbit.stage_count
     # The present grading needs as many intervals as the orbit has with its own largest tail.
     grading, interval_ratio = grading_and_interval_count_ratio(
@@ -99,7 +100,7 @@ def coarser_regraded_mesh(mesh: OrbitMesh, orbit: Orbit) -> OrbitMesh:
     # One more interval, because the last two have half the length.
     interval_count = max(
         ORBIT_MESH_SETTINGS.min_time_interval_count,
-        ceil(interval_ratio * mesh.full_length_interval_count) + 1,
+        ceil(interval_ratio * mesh.solved_duration_in_full_intervals) + 1,
     )
     return replace(mesh, interval_count=interval_count, grading=grading)
 
@@ -116,5 +117,5 @@ def finer_orbit_mesh(mesh: OrbitMesh, target: OrbitMesh) -> OrbitMesh:
         return refined
     return replace(
         mesh.mesh_finer_in_space,
-        interval_count=ceil(ORBIT_MESH_SETTINGS.time_interval_count_factor * mesh.interval_count),
+        interval_count=ceil(ORBIT_MESH_SETTINGS.interval_count_ratio_of_finer_mesh * mesh.interval_count),
     )

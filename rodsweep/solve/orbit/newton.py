@@ -78,8 +78,8 @@ def solve_by_newton(
     converge.
 
     tolerance: relative tolerance of states and period. workspace: memory of the matrices. parameter_name:
-    name of the parameter for the `tangent` of the matrix, or None. A matrix is used again as
-    long as the Newton steps decrease fast.
+    name of the parameter for the `tangent` of the matrix, or None. A matrix is used again as long as the
+    Newton steps decrease fast.
     """
     matrix = Linearisation(orbit, workspace, parameter_name)
     distance_from_matrix_orbit = 0.0
@@ -128,8 +128,8 @@ def newton_step_if_matrix_distant(
     solved: ConvergedOrbit, distance: float, parameter_name: str | None = None
 ) -> ConvergedOrbit:
     """The orbit `solved`, after one more Newton step if its matrix was assembled at a relative distance of
-    more than `distance` from the orbit. parameter_name: name of the parameter for the
-    `tangent` of the matrix, or None."""
+    more than `distance` from the orbit. parameter_name: name of the parameter for the `tangent` of the
+    matrix, or None."""
     if solved.distance_from_matrix_orbit <= distance:
         return solved
     return newton_step(solved, parameter_name)
@@ -137,8 +137,7 @@ def newton_step_if_matrix_distant(
 
 def newton_step(solved: ConvergedOrbit, parameter_name: str | None = None) -> ConvergedOrbit:
     """The orbit `solved` after one more Newton step, with the matrix at the orbit before this step.
-    parameter_name: name of the parameter for
-    the `tangent` of the matrix, or None."""
+    parameter_name: name of the parameter for the `tangent` of the matrix, or None."""
     orbit = solved.orbit
     matrix = Linearisation(orbit, solved.workspace, parameter_name)
     return ConvergedOrbit(orbit.plus_change(matrix.step), matrix, relative_change(orbit, matrix.step))

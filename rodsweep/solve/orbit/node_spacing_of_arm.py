@@ -14,15 +14,15 @@ class NodeSpacingSettings:
     """Settings for the spacing of nodes within elements."""
 
     stiffness_exponent_of_spacing: float = 0.5
-    """Exponent of the bending stiffness to which the distance of nodes is proportional: waves of a compressed
-    arm are as long as the root of its stiffness. Best exponents for the periods of cones of radius 0.3, 0.5
-    and 0.75 at the tip were 0.4, 0.5 and 0.6; errors of 1e-8 need 4 orders of 22 less than with equal
-    spacing."""
+    """The distance between nodes is proportional to this power of the bending stiffness, because the
+    wavelength in a compressed arm is proportional to the square root of the stiffness. Best exponents for the
+    periods of cones of radius 0.3, 0.5 and 0.75 at the tip were 0.4, 0.5 and 0.6; for errors of 1e-8 an order
+    of 18 suffices instead of 22 with equal spacing."""
     rounding_steps_of_ratio_per_unit: int = 64
     """Ratios are rounded to multiples of 1 over this number, so that neighbouring arms have equal meshes."""
     min_spacing_ratio: float = 0.125
-    """Smallest ratio of the distances of nodes at both ends of an element, that of a cone with 0.35 of the
-    radius at the tip."""
+    """Smallest ratio of the distances between nodes at the two ends of an element: the ratio for a cone whose
+    tip has 0.35 of the radius of its base."""
 
 
 NODE_SPACING_SETTINGS = NodeSpacingSettings()
@@ -30,7 +30,7 @@ NODE_SPACING_SETTINGS = NodeSpacingSettings()
 
 def with_node_spacing_of_arm(orbit: Orbit) -> Orbit:
     """The orbit on elements of the same edges and orders, whose nodes are closer where the arm is softer; the
-    orbit itself if the stiffness does not vary along an element."""
+    orbit itself if its nodes already have this spacing."""
     mesh = mesh_of_orbit(orbit)
     rod = orbit.form.rod
     offset = ELEMENT_SETTINGS.one_sided_node_offset

@@ -4,7 +4,7 @@ point.
 The values that change sign under the reflection grow as the square root of the distance from a Hopf point.
 Divided by the size of the orbit these values are smooth; the squared size grows linearly. The size is the
 norm of the bending moment at t = 0, and its definition contains no parameter. N: number of orbit values. r:
-arrays of the normalisation (`reflection_arrays`).
+arrays of the normalisation (`normalisation_arrays`).
 """
 
 from functools import lru_cache
@@ -21,7 +21,7 @@ from .orbit import Orbit
 from .symmetry import REFLECTION
 
 
-class ReflectionArrays(NamedTuple):
+class NormalisationArrays(NamedTuple):
     """Arrays for the normalisation of orbits. reversal_mask: 1 for components of a state that change sign
     under the reflection, 0 for all other components, (n,). moment_quadrature_weights: quadrature weights of
     m3^2 in the squared size, (n,)."""
@@ -30,14 +30,14 @@ class ReflectionArrays(NamedTuple):
     moment_quadrature_weights: Array
 
 
-def reflection_arrays(orbit: Orbit) -> ReflectionArrays:
+def normalisation_arrays(orbit: Orbit) -> NormalisationArrays:
     """Arrays for the normalisation of `orbit`."""
-    return _cached_reflection_arrays(orbit.form.layout, orbit.form.mesh)
+    return _cached_normalisation_arrays(orbit.form.layout, orbit.form.mesh)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _cached_reflection_arrays(layout: StateLayout, mesh: Mesh) -> ReflectionArrays:
-    return ReflectionArrays(
+def _cached_normalisation_arrays(layout: StateLayout, mesh: Mesh) -> NormalisationArrays:
+    return NormalisationArrays(
         REFLECTION.reversal_mask(layout), layout.state_with_stresses({"m3": mesh.quadrature_weights[:-1]})
     )
 
@@ -45,22 +45,22 @@ def _cached_reflection_arrays(layout: StateLayout, mesh: Mesh) -> ReflectionArra
 def normalised_orbit_values(orbit: Orbit) -> Array:
     """Normalised values of an orbit, (N + 1,): the orbit values, in which all components that change sign
     under the reflection are divided by the size of the orbit; at the end, the squared size."""
-    values: Array = compiled_normalised_orbit_values(orbit.values, reflection_arrays(orbit))
+    values: Array = compiled_normalised_orbit_values(orbit.values, normalisation_arrays(orbit))
     return values
 
 
 def tangent_of_normalised_orbit(orbit: Orbit, tangent: Array) -> Array:
     """Derivative of `normalised_orbit_values`, (N + 1,), with respect to a parameter; last entry: derivative
     of the squared size. tangent: derivative of the orbit values, (N,)."""
-    slopes: Array = compiled_tangent_of_normalised_orbit(orbit.values, tangent, reflection_arrays(orbit))
+    slopes: Array = compiled_tangent_of_normalised_orbit(orbit.values, tangent, normalisation_arrays(orbit))
     return slopes
 
 
 @compiled_with_reordered_sums
-def compiled_normalised_orbit_values(values: Array, r: ReflectionArrays) -> Array:
+def compiled_normalised_orbit_values(values: Array, r: NormalisationArrays) -> Array:
     """Compiled `normalised_orbit_values`: normalised values, (N + 1,), of the orbit with the given `values`,
-    (N,)."""
-    squared = start_moment_inner_product(values, values, r)
+    (N,). r: result of `normalisation_arrays`."""
+    squared = start_bending_moment_inner_product(values, values, r)
     out = np.empty(len(values) + 1)
     out[:-1] = values
     out[-1] = squared
@@ -69,8 +69,9 @@ def compiled_normalised_orbit_values(values: Array, r: ReflectionArrays) -> Arra
 
 
 @compiled_with_reordered_sums
-def values_from_normalised(normalised: Array, r: ReflectionArrays) -> Array:
-    """Values of an orbit, (N,), from its normalised values, (N + 1,), whose last entry must be positive."""
+def values_from_normalised(normalised: Array, r: NormalisationArrays) -> Array:
+    """Values of an orbit, (N,), from its normalised values, (N + 1,), whose last entry must be positive. r:
+    result of `normalisation_arrays`."""
     out = normalised[:-1].copy()
     _scale_reversed_components(out, normalised[-1] ** 0.5, r)
     return out
@@ -123,11 +124,11 @@ def predicted_normalised_values(values: Array, data: Array, orders: Array, weigh
 
 
 @compiled_with_reordered_sums
-def compiled_tangent_of_normalised_orbit(values: Array, tangent: Array, r: ReflectionArrays) -> Array:
+def compiled_tangent_of_normalised_orbit(values: Array, tangent: Array, r: NormalisationArrays) -> Array:
     """Compiled `tangent_of_normalised_orbit`: derivative of the normalised values, (N + 1,). values, tangent:
     orbit values and derivative of the orbit values, (N,)."""
-    squared = start_moment_inner_product(values, values, r)
-    change = 2 * start_moment_inner_product(values, tangent, r)
+    squared = start_bending_moment_inner_product(values, values, r)
+    change = 2 * start_bending_moment_inner_product(values, tangent, r)
     # d(v/size) = dv/size - v d(size^2)/(2 size^3), for the reversed components only.
     relative_rate = change / (2 * squared)
     out = np.empty(len(values) + 1)
@@ -142,7 +143,7 @@ def compiled_tangent_of_normalised_orbit(values: Array, tangent: Array, r: Refle
 
 
 @compiled_with_reordered_sums
-def start_moment_inner_product(values: Array, other_values: Array, r: ReflectionArrays) -> float:
+def start_bending_moment_inner_product(values: Array, other_values: Array, r: NormalisationArrays) -> float:
     """Integral over the rod of m3 m3' at t = 0, m3 and m3' from the orbit values `values` and `other_values`,
     (N,). With equal arguments this is the squared size."""
     total = 0.0
@@ -152,8 +153,8 @@ def start_moment_inner_product(values: Array, other_values: Array, r: Reflection
 
 
 @compiled_with_reordered_sums
-def _scale_reversed_components(values: Array, factor: float, r: ReflectionArrays) -> None:
-    """Multiplies, in place, the components that change sign under the reflection by `factor`, in all states
+def _scale_reversed_components(values: Array, factor: float, r: NormalisationArrays) -> None:
+    """Multiplies by `factor`, in place, the components that change sign under the reflection, in all states
     of `values`, (N,) or (N + 1,)."""
     n = len(r.reversal_mask)
     for first in range(0, len(values) - n + 1, n):

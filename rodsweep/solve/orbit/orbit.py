@@ -17,7 +17,7 @@ from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import Mesh
 from ...discretization.elements.time_collocation import CollocationMethod, radau_method
 from ...discretization.stress.form import StressForm
-from .compiled_measures import PowerMeansAndLeastStretch, power_means_and_least_stretch
+from .compiled_measures import MeanPowersAndLeastStretch, mean_powers_and_least_stretch
 from .equations import OrbitEquations
 from .symmetry import Symmetry
 from .time_grading import UNIFORM_TIME_GRADING, TimeGrading
@@ -32,7 +32,7 @@ class Orbit:
     `stage_count` collocation stages in each interval.
 
     values: states at t = 0 and at the stages of all intervals, in order, then the period in tau2, (N,), N =
-    (1 + K s) n + 1, n: unknowns of a state. grading: lengths of the intervals.
+    (1 + K s) n + 1, n: unknowns of a state. grading: grading of the lengths of the intervals.
     """
 
     form: StressForm
@@ -105,7 +105,7 @@ class Orbit:
 
     @property
     def is_symmetric(self) -> bool:
-        """Whether the solved part is shorter than the period (`symmetry.period_parts` > 1)."""
+        """Whether the solved part is shorter than the period (`symmetry.solved_parts_per_period` > 1)."""
         return self.symmetry.solved_parts_per_period > 1
 
     @cached_property
@@ -113,15 +113,15 @@ class Orbit:
         return _orbit_equations(self.form, self.symmetry, self.interval_count, self.stage_count, self.grading)
 
     @cached_property
-    def power_means_and_least_stretch(self) -> PowerMeansAndLeastStretch:
+    def mean_powers_and_least_stretch(self) -> MeanPowersAndLeastStretch:
         """Mean powers over a period, and the smallest h1."""
-        return power_means_and_least_stretch(
+        return mean_powers_and_least_stretch(
             np.ascontiguousarray(self.stage_states), self.collocation_method.weights, self.orbit_equations
         )
 
     @property
     def max_energy_norm(self) -> float:
-        """Largest energy norm of the states at the equidistant times, in units of sqrt(energy): the size of
+        """Largest energy norm of the states at equidistant mesh times, in units of sqrt(energy): the size of
         the motion."""
         # The norm is the same in the part of the period that follows by symmetry.
         return float(self.form.energy_norm(self.states_equidistant_in_mesh_time).max())
@@ -154,8 +154,8 @@ class Orbit:
         )
 
     def change_on_mesh(self, change: Array, target: Mesh, time_mesh: TimeMesh) -> Array:
-        """The change `change` of the values, (N,), interpolated to the space mesh `target` and to the time
-        intervals `time_mesh` by a linear map, (N on this mesh,)."""
+        """The change `change` of the values, (N,), interpolated by a linear map to the space mesh `target`
+        and the time intervals `time_mesh`, (N on these meshes,)."""
         points = self._values_at_times_of(change, time_mesh)
         if target != self.form.mesh:
             points = self.form.increments_on_mesh(target, points)
@@ -200,15 +200,17 @@ def time_interval_lengths(interval_count: int, grading: TimeGrading = UNIFORM_TI
     return np.diff(grading.times(edges))
 
 
-def time_interval_starts(interval_count: int, grading: TimeGrading = UNIFORM_TIME_GRADING) -> Array:
+def time_interval_start_fractions(interval_count: int, grading: TimeGrading = UNIFORM_TIME_GRADING) -> Array:
     """Start times of the time intervals as fractions of the solved duration, (intervals,)."""
     return np.append(0.0, np.cumsum(time_interval_lengths(interval_count, grading)[:-1]))
 
 
-def node_times(interval_count: int, stage_count: int, grading: TimeGrading = UNIFORM_TIME_GRADING) -> Array:
-    """Times of the start and of all stages as fractions of the solved duration, (1 + K s,), for K
-    `interval_count` with s `stage_count` each and the grading `grading`."""
-    starts = time_interval_starts(interval_count, grading)[:, None]
+def node_time_fractions(
+    interval_count: int, stage_count: int, grading: TimeGrading = UNIFORM_TIME_GRADING
+) -> Array:
+    """Times of the start and of all stages as fractions of the solved duration, (1 + K s,), for K =
+    `interval_count` intervals with s = `stage_count` stages each and the grading `grading`."""
+    starts = time_interval_start_fractions(interval_count, grading)[:, None]
     lengths = time_interval_lengths(interval_count, grading)[:, None]
     return np.append(0.0, starts + lengths * radau_method(stage_count).nodes)
 
@@ -217,7 +219,7 @@ def node_times(interval_count: int, stage_count: int, grading: TimeGrading = UNI
 def time_interpolation_matrix(source: TimeMesh, target: TimeMesh) -> csr_array:
     """Matrix that interpolates states from the time nodes of `source` to the time nodes of `target`. Shape:
     (1 + K s of target, 1 + K s of source), for K intervals with s stages each."""
-    return matrix_to_time_fractions(source, node_times(*target))
+    return matrix_to_time_fractions(source, node_time_fractions(*target))
 
 
 def matrix_to_time_fractions(source: TimeMesh, times: Array) -> csr_array:
@@ -228,7 +230,7 @@ def matrix_to_time_fractions(source: TimeMesh, times: Array) -> csr_array:
     orbit with many intervals would fill the memory.
     """
     K, s, grading = source
-    starts = time_interval_starts(K, grading)
+    starts = time_interval_start_fractions(K, grading)
     lengths = time_interval_lengths(K, grading)
     interval_indices = np.searchsorted(starts, times, side="right") - 1
     weights = np.empty((len(times), s + 1))

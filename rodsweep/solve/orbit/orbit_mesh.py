@@ -13,7 +13,7 @@ from ...discretization.elements.node_spacing import node_spacing_ratios_of_halve
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...discretization.state_layout import plane_layout
 from ..unsolvable import MeshLimitReached
-from .matrix.workspace import WORKSPACE_SETTINGS, factors_size, require_enough_stages
+from .matrix.workspace import WORKSPACE_SETTINGS, factors_size_in_doubles, require_enough_stages
 from .orbit import Orbit, TimeMesh
 from .time_grading import UNIFORM_TIME_GRADING, TimeGrading
 
@@ -37,10 +37,10 @@ class OrbitMeshSettings:
     one order less or more the error of an element may stay the same, by parity: with a change of 1, errors of
     arms and cones exceeded their estimates by up to 2.4 times."""
     element_order_decrease_of_coarser_mesh: int = 2
-    """Decrease of the element order from a mesh to its `coarser_mesh` mesh, whose errors are about ten times
+    """Decrease of the element order from a mesh to its `coarser_mesh`, whose errors are about ten times
     larger."""
     interval_count_ratio_of_coarser_mesh: float = 0.6
-    """Number of time intervals of the `coarser_mesh` mesh, divided by the number of the mesh itself."""
+    """Number of time intervals of the `coarser_mesh`, divided by the number of the mesh itself."""
     min_element_order: int = 8
     """Smallest element order of a chosen mesh."""
     min_time_interval_count: int = 4
@@ -59,13 +59,13 @@ class OrbitMeshSettings:
     """Largest ratio of the new number of time intervals to the current number; the tail cannot be
     extrapolated to larger ratios."""
     max_regraded_interval_count_ratio: float = 0.9
-    """The grading of the time intervals changes with a new mesh if the ratio of the numbers of intervals, new
-    grading to present grading, is at most this number."""
-    time_interval_count_factor: float = 1.2
-    """Factor on the number of time intervals for the mesh `finer_mesh`, and if the mesh chosen from the tails
-    is not finer than the current mesh."""
+    """A mesh gets a new grading of the time intervals only if the new grading needs at most this fraction of
+    the present number of intervals."""
+    interval_count_ratio_of_finer_mesh: float = 1.2
+    """Factor on the number of time intervals, for `finer_mesh`, and for the next mesh if the mesh chosen from
+    the tails is not finer than the current mesh."""
     element_order_ratio_after_halving: float = 0.6
-    """Ratio of the element order after all elements are halved to the order before, for equal errors."""
+    """Element order after all elements are halved, divided by the order before, for equal errors."""
     doubles_per_vector_register: int = 8
     """Number of doubles in a vector register. The computing time of matrix products depends on the number of
     unknowns rounded up to a multiple of this number."""
@@ -94,7 +94,7 @@ class OrbitMesh:
     """Mesh of an orbit. element_edges: edges of the elements in space, from 0 to 1. order: largest order of
     an element. order_ratios: order of each element divided by `order`; empty if all orders are equal.
     interval_count: number of time intervals. stage_count: number of Radau stages of each interval. grading:
-    grading of the time intervals. spacing_ratios: as in `Elements`."""
+    grading of the time intervals. spacing_ratios: `node_spacing_ratios` of `Elements`."""
 
     element_edges: tuple[float, ...]
     order: int
@@ -110,7 +110,8 @@ class OrbitMesh:
         return len(self.element_edges) - 1
 
     def has_same_edges_and_order_ratios(self, other: "OrbitMesh") -> bool:
-        """Whether both meshes have the same edges and ratios of elements; orders and intervals may differ."""
+        """Whether both meshes have the same element edges, order ratios and spacing ratios; the largest order
+        and the time intervals may differ."""
         elements = self.element_edges, self.order_ratios, self.spacing_ratios
         return elements == (other.element_edges, other.order_ratios, other.spacing_ratios)
 
@@ -120,7 +121,7 @@ class OrbitMesh:
         return self.interval_count, self.stage_count, self.grading
 
     @property
-    def full_length_interval_count(self) -> int:
+    def solved_duration_in_full_intervals(self) -> int:
         """Solved duration divided by the length of a full interval; the last two intervals have half this
         length."""
         return self.interval_count - 1
@@ -171,9 +172,9 @@ class OrbitMesh:
         return replace(self, order=order, interval_count=interval_count)
 
     def with_order(self, order: int) -> "OrbitMesh":
-        """This mesh with another largest order, `order`. The orders of all elements change by at least
-        `min_element_order_change`, or as the largest order if it changes less, so that the difference between
-        cycles on both meshes contains the errors of every element."""
+        """This mesh with another largest order, `order`. The order of every element changes by at least the
+        smaller of `min_element_order_change` and the change of the largest order. The difference between
+        cycles on both meshes then contains the errors of every element."""
         if order == self.order or not self.order_ratios:
             return replace(self, order=order)
         scaled_orders = element_orders(self.element_count, order, self.order_ratios)
@@ -194,7 +195,7 @@ class OrbitMesh:
     @property
     def finer_mesh(self) -> "OrbitMesh":
         """Mesh finer than this mesh in space and time, used if no allowed mesh is predicted to suffice."""
-        interval_count = int(ORBIT_MESH_SETTINGS.time_interval_count_factor * self.interval_count) + 1
+        interval_count = int(ORBIT_MESH_SETTINGS.interval_count_ratio_of_finer_mesh * self.interval_count) + 1
         return replace(self.mesh_finer_in_space, interval_count=interval_count)
 
     @property
@@ -222,7 +223,7 @@ class OrbitMesh:
         return (
             self.unknown_count <= ORBIT_MESH_SETTINGS.max_unknown_count
             and self.interval_count <= ORBIT_MESH_SETTINGS.max_time_interval_count
-            and factors_size(self.interval_count, self.stage_count, self.unknown_count)
+            and factors_size_in_doubles(self.interval_count, self.stage_count, self.unknown_count)
             <= WORKSPACE_SETTINGS.max_buffer_size
         )
 

@@ -16,8 +16,8 @@ from .symmetry import NO_SYMMETRY, REFLECTION
 
 
 def orbit_arrays(orbit: Orbit) -> dict[str, Array]:
-    """The orbit as named arrays: values (N,), rod (parameters,) with its material (bytes,), mesh,
-    symmetry."""
+    """The orbit as arrays by name: "rod", its parameters; "build", its material, (bytes,); "symmetric";
+    "mesh", as `OrbitMesh.as_array`; "orbit", the orbit values, (N,)."""
     return {
         "rod": np.array(list(orbit.form.rod.values.values())),
         # Checkpoints hold arrays only, so a text is stored as its bytes.
@@ -29,7 +29,7 @@ def orbit_arrays(orbit: Orbit) -> dict[str, Array]:
 
 
 def orbit_from_arrays(arrays: Mapping[str, Array], is_omega_always_unknown: bool = False) -> Orbit:
-    """The orbit from named arrays with the shapes that `orbit_arrays` gives, as "orbit" (N,).
+    """The orbit from named arrays with the shapes that `orbit_arrays` gives, for example "orbit", (N,).
     is_omega_always_unknown: option of the orbit's `StressForm`."""
     mesh = OrbitMesh.from_array(arrays["mesh"])
     parameters: dict[str, Any] = dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True))

@@ -2,7 +2,8 @@
 
 S is the same rotation or reflection of the body frame at all nodes. The reflection in the line of the
 straight rod leaves n1 and v1 unchanged and changes the sign of n2, m3, v2 and Omega; the mirror image of a
-motion is a motion. The phase condition (`phase`) is the same for orbits with and without the reflection.
+motion is a motion. The phase condition (`phase_condition`) is the same for orbits with and without the
+reflection.
 """
 
 from dataclasses import dataclass
@@ -20,7 +21,7 @@ from ...model.balance import Values
 class Symmetry:
     """Symmetry x(T/p) = S x(0) of an orbit. component_matrix: orthogonal matrix, (d, d), by which S
     multiplies the d stress components and the d velocity components at every node. solved_parts_per_period:
-    p."""
+    p. In the methods, `layout` is the layout of the unknowns of a state."""
 
     component_matrix: Array
     solved_parts_per_period: int

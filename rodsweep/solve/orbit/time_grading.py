@@ -21,7 +21,8 @@ class TimeGradingSettings:
     """Settings for the grading of the time intervals of an orbit."""
 
     grading_amplitude_step: float = 0.05
-    """The two numbers of a grading are multiples of this step, so that similar orbits share their meshes."""
+    """The two amplitudes of a grading are multiples of this step, so that similar orbits share their
+    meshes."""
     max_grading_amplitude: float = 0.6
     """Largest amplitude of dt/dtau - 1: the longest interval is at most four times as long as the
     shortest."""
@@ -32,7 +33,7 @@ class TimeGradingSettings:
     """Number of equidistant times per node at which a function of the mesh time is evaluated to find its
     harmonics in time. A function of the time has fewer harmonics than the same function of the mesh time."""
     inversion_bisection_count: int = 8
-    """Number of bisections that invert the map with an error of 0.002, from where Newton's method
+    """Number of bisections that invert the map with an error of 0.002, from which Newton's method
     converges."""
     newton_step_count: int = 4
     """Number of Newton steps that invert the map after the bisections; the third reaches rounding error."""
@@ -45,7 +46,7 @@ TIME_GRADING_SETTINGS = TimeGradingSettings()
 class TimeGrading:
     """Map from the mesh time tau to the time t, both as fractions of the solved part of the period:
 
-    dt/dtau = 1 + cosine cos(2 pi harmonic tau) + sine sin(2 pi harmonic tau),   t(0) = 0.
+    dt/dtau = 1 + cosine_amplitude cos(2 pi harmonic tau) + sine_amplitude sin(2 pi harmonic tau),  t(0) = 0.
     """
 
     cosine_amplitude: float = 0.0
@@ -134,8 +135,8 @@ def fourier_coefficients_in_time(c: Complex, grading: TimeGrading, part_count: i
 
 
 def samples_in_time(c: Complex, grading: TimeGrading, part_count: int) -> Array:
-    """Values at equidistant times of the period, (m, ...), of the function of
-    `fourier_coefficients_in_time`."""
+    """Values, (m, ...), at equidistant times of the period, of the function in
+    `fourier_coefficients_in_time`; same arguments."""
     cosines, sines = _mesh_time_waves_at_equal_times(len(c), grading, part_count)
     columns = c.reshape(len(c), -1)
     samples: Array = cosines @ columns.real - sines @ columns.imag
@@ -146,8 +147,8 @@ def samples_in_time(c: Complex, grading: TimeGrading, part_count: int) -> Array:
 def _mesh_time_waves_at_equal_times(
     coefficient_count: int, grading: TimeGrading, part_count: int
 ) -> tuple[Array, Array]:
-    """Cosines and sines of 2 pi k tau, (m, count) each, k = 0 ... count - 1, at the mesh times tau of m
-    equidistant times of the period."""
+    """Cosines and sines of 2 pi k tau, (m, `coefficient_count`) each, k from 0 to `coefficient_count` - 1, at
+    the mesh times tau of m equidistant times of the period."""
     sample_count = TIME_GRADING_SETTINGS.samples_per_time_node * (coefficient_count - 1)
     part, times = np.divmod(part_count * np.arange(sample_count), sample_count)
     mesh_times = (part + grading.mesh_times(times / sample_count)) / part_count

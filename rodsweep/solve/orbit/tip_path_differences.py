@@ -13,9 +13,9 @@ PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX = range(4)
 
 
 def tip_path_differences(coarse: CycleMotion, fine: CycleMotion) -> Array:
-    """Differences of the tip's paths in two motions of a cycle, (4,): difference of the period, of the
-    largest y, of the extremum with the largest difference, and largest difference of the tip's x, y or theta
-    over the period.
+    """Differences between the tip's paths in two motions of a cycle, (4,): difference of the period,
+    difference of the largest y, largest difference of an extremum, and largest difference of the tip's x, y
+    or theta over the period.
 
     The first number is the larger of two relative differences: of the periods, and of the parameters of the
     rods, which may be different on a branch. The remaining three differences are divided by the largest y of
@@ -51,5 +51,5 @@ def _rod_parameter_coordinates(rod: Rod) -> Array:
     """Coefficients of the equations of a uniform linear rod, or coordinates of all parameters of any other
     rod, (n,)."""
     if rod.is_uniform_and_linear:
-        return np.array([*rod.coefficients, rod.axial_drag])
+        return np.array([*rod.coefficients, rod.base_axial_drag])
     return np.array([rod.coordinate(name) for name in PARAMETERS])

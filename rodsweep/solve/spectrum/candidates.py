@@ -12,7 +12,7 @@ import numpy as np
 
 from ...arrays import Complex
 from ...determinant.certificate.winding_number import EigenvalueCount
-from ...determinant.roots.roots import Roots
+from ...determinant.roots.roots import RootsOfD
 from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.compiled.kernel_constants import KernelConstants
 from ..backend.petsc import PETSC_EXCEPTIONS
@@ -26,8 +26,8 @@ class CandidateSettings(KernelConstants):
     """Settings for the eigenvalues of a mesh, and for the lines right of which eigenvalues are counted."""
 
     min_wide_gap_over_real_part: float = 0.2
-    """Gaps between successive real parts, in which a line for a count may lie, are treated as equally wide if
-    their width, divided by |Re w| of the left eigenvalue, exceeds this (stable rods)."""
+    """A line for a count lies in a gap between successive real parts. For a stable rod, gaps are treated as
+    equally wide if their width, divided by |Re w| of the left eigenvalue, exceeds this."""
     min_wide_gap_over_real_part_if_unstable: float = 0.05
     """Like `min_wide_gap_over_real_part`, for an unstable rod; less than `min_wide_gap_over_real_part`,
     because eigenvalues far to the left converge last and need a finer mesh."""
@@ -43,14 +43,15 @@ class CandidateSettings(KernelConstants):
     part, is at most this."""
     max_relative_same_root_distance: float = 1e-6
     """Roots found with two shifts are the same root if their distance is at most this times |w|. Taking two
-    roots for one is safe: the count then disagrees; one root taken for two could agree with a wrong count."""
+    roots for one root is safe, because the count then disagrees; one root taken for two could agree with a
+    wrong count."""
     max_count_lines: int = 3
     """Maximum number of lines tried for the count of one rod."""
     proof_line_distance_in_errors: float = 3.0
     """Distance from the last wanted eigenvalue w to the line of a proof without a count: this multiple of the
     error of w plus `relative_proof_line_distance` * |w|, to the left."""
     relative_proof_line_distance: float = 1e-9
-    """Part of the distance in `proof_line_distance_in_errors` that is proportional to |w|, divided by |w|."""
+    """Second part of the distance that `proof_line_distance_in_errors` describes, divided by |w|."""
 
 
 CANDIDATE_SETTINGS = CandidateSettings()
@@ -62,7 +63,7 @@ class Candidates:
     eigenvectors on the mesh, (unknowns, k), or None. failure: error message of SLEPc or LAPACK, or empty."""
 
     mesh: AnyMesh
-    roots: Roots
+    roots: RootsOfD
     eigenvectors: Complex | None
     failure: str = ""
 
@@ -76,17 +77,19 @@ class Candidates:
         same_distances = CANDIDATE_SETTINGS.max_relative_same_root_distance * np.abs(other.w) + other.error
         is_new = (distances > np.maximum(same_distances[:, None], own.error)).all(axis=1)
         united = [np.append(mine, more[is_new]) for mine, more in zip(own[:-1], other[:-1], strict=True)]
-        w = united[Roots._fields.index("w")]
+        w = united[RootsOfD._fields.index("w")]
         order = np.lexsort((-w.imag, -w.real))
         return replace(
             self,
-            roots=Roots._make([*(values[order] for values in united), own.unmatched_mesh_eigenvalue_count]),
+            roots=RootsOfD._make(
+                [*(values[order] for values in united), own.unmatched_mesh_eigenvalue_count]
+            ),
         )
 
     @property
     def has_found_only_growing_eigenvalues(self) -> bool:
-        """Whether some eigenvalues are found, all of which grow, and none right of them is unresolved: the
-        others are then far left of the shift."""
+        """Whether some eigenvalues are found, all of them grow, and no eigenvalue to the right of them is
+        unresolved: all other eigenvalues are then far to the left of the shift."""
         w = self.roots.w
         return len(w) > 0 and bool((w.real > 0).all()) and not self.roots.unmatched_mesh_eigenvalue_count
 
@@ -158,10 +161,10 @@ def candidates_on_mesh(
     return Candidates(mesh, kept_roots, vectors, failure)
 
 
-def compare_with_count(problem: TransverseProblem, roots: Roots, mode_count: int) -> CountComparison:
+def compare_with_count(problem: TransverseProblem, roots: RootsOfD, mode_count: int) -> CountComparison:
     """Number of eigenvalues to the right of a vertical line, by a proof or a count, compared with those
-    found. The line lies to the left of the `mode_count` leading eigenvalues and of all unstable
-    eigenvalues."""
+    found. The line lies to the left of the `mode_count` leading eigenvalues and of all unstable eigenvalues.
+    roots: eigenvalues found, at least `mode_count`, by descending real part."""
     w: Any = roots.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = roots.error.tolist()
     # A proof is far cheaper than a count, so it is tried first.

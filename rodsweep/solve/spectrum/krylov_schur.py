@@ -54,8 +54,8 @@ class UniformSolver(ShiftInvertSolver):
                 "with these parameters matrix entries exceed the largest floating-point number"
             )
         # B depends on this drag only, so most rods of a sweep keep it.
-        if rod.rotational_drag != self.loaded_gamma3:
-            self.loaded_gamma3 = rod.rotational_drag
+        if rod.base_rotational_drag != self.loaded_gamma3:
+            self.loaded_gamma3 = rod.base_rotational_drag
             self.mass_diagonal = self.pencil.mass_diagonal(rod)
             self.B.setValuesCSR(self.row_starts, self.row_starts[:-1], self.mass_diagonal)
             self.B.assemble()
@@ -74,7 +74,7 @@ class UniformSolver(ShiftInvertSolver):
         return CurrentPencil(finite_eigenvalue_count(rod, self.node_count), shift, deflection_ratio)
 
     def displacements(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
-        """Returns (y, theta) at all nodes, (nodes + 1, k). vectors: eigenvectors of the last solve,
+        """Returns (y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the last solve,
         (unknowns, k)."""
         return displacements_of_eigenvectors(vectors, self.pencil.displacement_factors(rod))
 
@@ -87,7 +87,7 @@ def _equivalent_filament_and_deflection_ratio(rod: Rod) -> tuple[Rod, float]:
     scaled by nu^2. Near crushing the matrices of the partial beam are badly scaled. Another rod is returned
     unchanged, with the ratio 1.
     """
-    if rod.c2 == 0 and rod.rotational_drag == 0 and rod.nu != 1:
+    if rod.c2 == 0 and rod.base_rotational_drag == 0 and rod.nu != 1:
         return Rod(F=rod.F * rod.nu, k1=math.inf, k2=math.inf, gamma3=0.0), rod.nu
     return rod, 1.0
 

@@ -22,10 +22,10 @@ from ...determinant.arm.count.count import count_right_of as count_of_arm
 from ...determinant.arm.count.count import is_countable, largest_w_of_count
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.hull.hull import hull_of
-from ...determinant.arm.roots import refine_mesh_eigenvalues as roots_of_arm
-from ...determinant.certificate.eigenvalue_box import frequency_bound
+from ...determinant.arm.mesh_eigenvalue_refinement import refine_mesh_eigenvalues as roots_of_arm
+from ...determinant.certificate.box_of_all_eigenvalues import frequency_bound
 from ...determinant.certificate.winding_number import EigenvalueCount, count_right_of
-from ...determinant.roots.roots import Roots, refined_roots
+from ...determinant.roots.roots import RootsOfD, refined_roots
 from ...discretization.elements.resolution import (
     RESOLUTION_SETTINGS,
     Resolution,
@@ -38,7 +38,7 @@ from ...discretization.straight.uniform_resolution import first_resolution
 from ...model.dispersion import (
     largest_growth_and_wave_number,
     largest_growth_at_ends,
-    local_growths_and_wave_numbers,
+    most_amplified_local_waves,
 )
 from ...model.rod import Rod
 from .arm_solver import ArmSolver, arm_solver
@@ -50,14 +50,14 @@ from .shift_invert import KRYLOV_SETTINGS
 class TransverseProblem(ABC):
     """Meshes, solver and determinant D of one rod. shift: target of Krylov-Schur, to the right of most
     spectra, in 1/tau2. has_eigenvalue_bound: whether an a-priori bound of the eigenvalues exists.
-    is_count_slow: whether one count takes longer than several eigenvalue problems. largest_wave_number:
-    largest local wave number of amplified waves, in 1/L; 0 if no waves are amplified."""
+    is_count_slow: whether a count takes longer than several eigenproblems. largest_growing_wave_number:
+    largest local wave number of amplified waves, in 1/L; 0 without such waves."""
 
     rod: Rod
     shift: float
     has_eigenvalue_bound: bool
     is_count_slow: ClassVar[bool]
-    largest_wave_number: float
+    largest_growing_wave_number: float
     additional_eigenvalue_count: int = 0
     """Number of eigenvalues requested from the first mesh besides the modes, for a proof without a count."""
 
@@ -74,10 +74,10 @@ class TransverseProblem(ABC):
     @property
     def shortest_growing_wave_clause(self) -> str:
         """Clause with the shortest growing wave and a remedy, for a message that no mesh resolves it."""
-        if not self.largest_wave_number:
+        if not self.largest_growing_wave_number:
             return ""
         taper_clause = " or a larger taper" if self.rod.taper < 1 else ""
-        wavelength = 2 * pi / self.largest_wave_number
+        wavelength = 2 * pi / self.largest_growing_wave_number
         return f": waves as short as {wavelength:.1g} L grow; a smaller |F|{taper_clause} makes them longer"
 
     @abstractmethod
@@ -98,15 +98,15 @@ class TransverseProblem(ABC):
         return uniform_solver(mesh) if isinstance(mesh, Resolution) else arm_solver(mesh)
 
     @abstractmethod
-    def refined_roots(self, mesh_eigenvalues: Complex, mesh: Any) -> Roots:
-        """Roots of D refined from the eigenvalues `mesh_eigenvalues` of `mesh`, (n,); eigenvalues whose wave
-        numbers the mesh does not represent are dropped."""
+    def refined_roots(self, mesh_eigenvalues: Complex, mesh: Any) -> RootsOfD:
+        """Roots of D refined from the eigenvalues `mesh_eigenvalues` of `mesh`, (n,); eigenvalues
+        whose wave numbers the mesh does not represent are dropped."""
 
     @abstractmethod
-    def count_right_of(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
+    def count_right_of(self, line: float, roots: RootsOfD | KnownRoots | None = None) -> EigenvalueCount:
         """Proved number of eigenvalues with Re w > line. roots: known roots of D, for a faster count."""
 
-    def completeness_proof_and_evaluations(self, line: float, roots: Roots) -> tuple[bool, int]:
+    def completeness_proof_and_evaluations(self, line: float, roots: RootsOfD) -> tuple[bool, int]:
         """Returns (proved, evaluations). proved: whether it is proved that `roots` contains all eigenvalues
         to the right of `line`. evaluations: number of evaluations of D. The proof needs no count. For a
         uniform rod, whose count is fast, no proof is tried."""
@@ -125,8 +125,8 @@ class UniformProblem(TransverseProblem):
 
     def __init__(self, rod: Rod):
         self.rod = rod
-        growth, self.largest_wave_number = largest_growth_and_wave_number(rod)
-        self.shift = _shift_over_waves(rod, growth)
+        growth, self.largest_growing_wave_number = largest_growth_and_wave_number(rod)
+        self.shift = _shift_right_of_waves(rod, growth)
         self._sqrt_frequency_bound = sqrt(frequency_bound(rod))
         self.has_eigenvalue_bound = isfinite(self._sqrt_frequency_bound)
 
@@ -139,12 +139,12 @@ class UniformProblem(TransverseProblem):
         requested_mesh = resolution_for(float(waves.max()), accuracy)
         return max(requested_mesh, finer_resolution(mesh), key=lambda each: each.unknown_count)
 
-    def refined_roots(self, mesh_eigenvalues: Complex, mesh: Any) -> Roots:
+    def refined_roots(self, mesh_eigenvalues: Complex, mesh: Any) -> RootsOfD:
         """Roots of D refined from `mesh_eigenvalues`, (n,), as in `TransverseProblem.refined_roots`."""
         max_q = RESOLUTION_SETTINGS.max_wave_number_per_node * mesh.element_count * mesh.order
         return refined_roots(mesh_eigenvalues, self.rod.coefficients, self._sqrt_frequency_bound, max_q)
 
-    def count_right_of(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
+    def count_right_of(self, line: float, roots: RootsOfD | KnownRoots | None = None) -> EigenvalueCount:
         return count_right_of(line, self.rod)
 
 
@@ -163,13 +163,13 @@ class ArmProblem(TransverseProblem):
         self.has_eigenvalue_bound = isfinite(self._hull.a)
         if modes_to_prove and self.has_eigenvalue_bound:
             self.additional_eigenvalue_count = COMPLETENESS_SETTINGS.eigenvalue_count_beyond_modes
-        growth, wave_numbers = local_growths_and_wave_numbers(rod)
-        self.largest_wave_number = float(wave_numbers.max())
-        self.shift = _shift_over_waves(rod, float(growth.max()))
+        growth, wave_numbers = most_amplified_local_waves(rod)
+        self.largest_growing_wave_number = float(wave_numbers.max())
+        self.shift = _shift_right_of_waves(rod, float(growth.max()))
 
     def move_shift_right(self) -> None:
-        """Doubles the shift, or moves it beyond the growth rate of local waves at a thin tip, which lies
-        between the sample points; at most to the right end of the hull."""
+        """Doubles the shift, or moves it farther, beyond the growth rate of local waves at the ends, which
+        the sample points may miss at a thin tip; at most to the right end of the hull."""
         right_end = self._hull.a**2 / (4 * (1 - self._hull.c))
         growth = KRYLOV_SETTINGS.shift_over_growth_rate * largest_growth_at_ends(self.rod)
         self.shift = max(self.shift, min(max(2 * self.shift, growth), right_end))
@@ -184,10 +184,10 @@ class ArmProblem(TransverseProblem):
     def finer_mesh(self, mesh: Any) -> ArmMesh:
         return graded_towards_ends(self.rod, finer_arm_mesh(self.rod, mesh))
 
-    def refined_roots(self, mesh_eigenvalues: Complex, mesh: Any) -> Roots:
-        """Roots of D refined from `mesh_eigenvalues`, (n,); if a proof is requested, and until one fails,
-        only from the eigenvalues that the proof needs."""
-        needed_mask, max_abs_w = self._needed_eigenvalues_and_max_abs_w(mesh_eigenvalues)
+    def refined_roots(self, mesh_eigenvalues: Complex, mesh: Any) -> RootsOfD:
+        """Roots of D refined from `mesh_eigenvalues`, (n,); if a proof is requested, and until one
+        fails, only from the eigenvalues that the proof needs."""
+        needed_mask, max_abs_w = self._needed_mask_and_max_abs_w(mesh_eigenvalues)
         max_q_of_unit_element = RESOLUTION_SETTINGS.max_wave_number_per_node * mesh.order
         max_end_q = max_q_of_unit_element * (1 / mesh.lengths[[0, -1]])
         # Infinite values are dropped by the refinement; all others keep their indices.
@@ -195,7 +195,7 @@ class ArmProblem(TransverseProblem):
         max_q = max_q_of_unit_element * mesh.element_count
         return roots_of_arm(w, self._determinant, self._hull, max_q, max_abs_w, max_end_q)
 
-    def _needed_eigenvalues_and_max_abs_w(self, mesh_eigenvalues: Complex) -> tuple[NDArray[np.bool_], float]:
+    def _needed_mask_and_max_abs_w(self, mesh_eigenvalues: Complex) -> tuple[NDArray[np.bool_], float]:
         """Returns (mask, max_abs_w). mask: True for each of the `mesh_eigenvalues` that the proof will need,
         (n,). max_abs_w: largest |w| at which the proof needs D; 0 if unknown."""
         needed_mask = np.isfinite(mesh_eigenvalues)
@@ -213,7 +213,7 @@ class ArmProblem(TransverseProblem):
         needed_mask[order[number:]] = False
         return needed_mask, max_abs_w
 
-    def count_right_of(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
+    def count_right_of(self, line: float, roots: RootsOfD | KnownRoots | None = None) -> EigenvalueCount:
         w_and_errors = () if roots is None else (roots.w, roots.error)
         return count_of_arm(line, self._determinant, self._hull, *w_and_errors)
 
@@ -221,16 +221,16 @@ class ArmProblem(TransverseProblem):
     def is_countable(self) -> bool:
         return is_countable(self._determinant, self._hull)
 
-    def completeness_proof_and_evaluations(self, line: float, roots: Roots) -> tuple[bool, int]:
+    def completeness_proof_and_evaluations(self, line: float, roots: RootsOfD) -> tuple[bool, int]:
         is_complete, evaluations = prove_complete(line, roots.w, roots.error, self._determinant, self._hull)
         # The next mesh then refines all eigenvalues, as a count needs them.
         self._has_proof_failed |= not is_complete
         return is_complete, evaluations
 
 
-def _shift_over_waves(rod: Rod, growth: float) -> float:
-    """The shift of a rod whose most amplified wave has the growth rate `growth`, so far to the right that the
-    eigenvalues nearest to it are mostly the rightmost, in 1/tau2.
+def _shift_right_of_waves(rod: Rod, growth: float) -> float:
+    """The shift, in 1/tau2, of a rod whose most amplified wave has the growth rate `growth`. The shift lies
+    so far to the right that the eigenvalues nearest to it are mostly the rightmost.
 
     If no wave grows, the shift is the rate -F of a string under the pull. With the shift 0, next to the
     exponentially small leading eigenvalue of a pulled rod, rounding errors would hide all others."""

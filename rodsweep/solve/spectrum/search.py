@@ -28,7 +28,7 @@ __all__ = ["SpectrumSearch", "Spectrum", "SpectrumRequest", "solve_spectrum", "w
 
 
 def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
-    """The leading `request.modes` eigenvalues of a rod; a failure is returned as a status, never raised."""
+    """The leading `request.mode_count` eigenvalues of a rod; a failure is a status, never an exception."""
     if not rod.is_uniform or rod.is_uniform_and_linear:
         return spectrum_or_failure(lambda: SpectrumSearch(rod, request).find_spectrum(), request)
     linear, rate = rod.equivalent_linear_rod_and_rate_factor
@@ -43,9 +43,8 @@ def warm_up() -> None:
 
 
 class SpectrumSearch:
-    """Search for the leading eigenvalues of one rod: the next mesh, the best candidates, the failures so far.
-    requested: number of eigenvalues in the first request; default: modes plus
-    `additional_eigenvalue_count`."""
+    """Search for the leading eigenvalues of one rod. requested_count: number of eigenvalues in the first
+    request; default: `request.mode_count` plus `additional_eigenvalue_count`."""
 
     def __init__(self, rod: Rod, request: SpectrumRequest, requested_count: int | None = None):
         self.problem = transverse_problem(rod, request.mode_count if request.certify else 0)
@@ -131,14 +130,14 @@ class SpectrumSearch:
         if comparison is not None and comparison.agrees and not self.needs_vectors:
             return ratio
         settings = SEARCH_SETTINGS
-        max_ratio = settings.max_relative_root_distance
+        max_ratio = settings.max_relative_mesh_displacement
         if not self.problem.has_eigenvalue_bound:
-            max_ratio = settings.max_relative_root_distance_if_unbounded
+            max_ratio = settings.max_mesh_displacement_if_w_unbounded
         distance_ratio = float(candidates.roots.relative_mesh_displacement[: self.modes].max())
         return max(ratio, distance_ratio / (self.request.accuracy if self.needs_vectors else max_ratio))
 
     def request_missing_eigenvalues(self, counted: int, found_count: int) -> None:
-        """Requests more eigenvalues or a finer mesh, after a count of `counted` eigenvalues."""
+        """Requests more eigenvalues or a finer mesh, if `counted` were counted and `found_count` found."""
         if counted < found_count:  # spurious eigenvalues
             self.mesh = self.problem.finer_mesh(self.mesh)
             return
@@ -155,15 +154,16 @@ class SpectrumSearch:
 
     def count_needs_decaying_modes(self, candidates: Candidates) -> bool:
         """Whether a slow count needs eigenvalues with Re w <= 0 too, because all modes in `candidates` grow.
-        False if no count can succeed and `SEARCH_SETTINGS.max_unproved_modes` modes are found."""
+        False if no count can succeed and `SEARCH_SETTINGS.max_modes_found_without_proof` modes are found."""
         if not (self.request.certify and self.problem.is_count_slow and (candidates.roots.w.real > 0).all()):
             return False
-        return len(candidates.roots.w) < SEARCH_SETTINGS.max_unproved_modes or self.problem.is_countable
+        count = len(candidates.roots.w)
+        return count < SEARCH_SETTINGS.max_modes_found_without_proof or self.problem.is_countable
 
     def request_decaying_modes(self, candidates: Candidates) -> None:
         """Requests eigenvalues left of `candidates`, which all grow, because a count also needs decaying
-        modes: with the shift at the left of `candidates` or, if the last shift or mesh gave no further
-        eigenvalue, more eigenvalues; refines the mesh if fewer were found than requested."""
+        modes. Moves the shift to the left or, if the last shift or mesh gave no further eigenvalue, requests
+        more eigenvalues. Refines the mesh if fewer were found than requested."""
         self.is_leader_unresolved = True
         found_count = len(candidates.roots.w)
         if found_count < self.requested_count:
@@ -177,7 +177,7 @@ class SpectrumSearch:
             self.problem.move_shift_left(float(candidates.roots.w.real.min()))
 
     def request_eigenvalues(self, requested_count: int) -> None:
-        """Requests eigenvalues, and refines the mesh until it has enough unknowns for their number."""
+        """Requests `requested_count` eigenvalues, and refines the mesh until it has enough unknowns."""
         while (
             requested_count > self.mesh.unknown_count // SEARCH_SETTINGS.min_unknowns_per_mode
             and self.mesh.unknown_count <= RESOLUTION_SETTINGS.max_unknowns

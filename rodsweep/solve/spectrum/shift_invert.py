@@ -29,7 +29,7 @@ class KrylovSettings:
     """Shift divided by the growth rate of the most amplified wave. This growth rate is above most spectra."""
     shift_over_smallest_growth_rate: float = 0.5
     """Shift divided by the smallest growth rate found, if smaller ones are missing: below 1, because the next
-    eigenvalue lies to the left, and not 0, where growth rates are far apart."""
+    eigenvalue lies to the left; not 0, because growth rates may be far apart."""
     shift_reduction_factor: float = 0.01
     """The shift is multiplied by this number if the previous shift gave no further eigenvalue."""
     max_dense_unknowns: int = 300

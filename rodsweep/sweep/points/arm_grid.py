@@ -12,7 +12,7 @@ from ...arrays import Array
 from ...config.arm.section import ArmConfig
 from ...config.arm.status import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER, ArmOutsideModel
 from ...model.arm.arm import SlenderArm
-from ...model.arm.quantities import ARM_SCALES, LOAD_NAME_BY_RELATIVE_LOAD, LOAD_SCALE_NAMES
+from ...model.arm.quantities import ARM_SCALES, LOAD_NAME_BY_RELATIVE_LOAD, LOAD_SCALE_NAME_BY_LOAD
 from ...model.arm.refusals import CRUSHED_FORCE_RATIO
 from ...model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from ...model.parameters import NONLINEAR_ROD_PARAMETER_NAMES, parameter_names_except
@@ -22,12 +22,12 @@ from .points import Points
 FlutterForceFinder = Callable[[SlenderArm, float | None], FlutterForce]
 """Function from (arm, taper that replaces the arm's taper or None) to the force of first flutter."""
 FlutterForceArray = NDArray[np.object_]
-"""Array of `FlutterForce` objects, (arms, 1, combinations). Combinations are the combinations of values of
-the parameters that replace the arm's parameters."""
+"""Array of `FlutterForce` objects, (arms, 1, combinations), for all combinations of values of the parameters
+that replace the arm's parameters."""
 ARM_PARAMETER_NAMES = parameter_names_except("F", NONLINEAR_ROD_PARAMETER_NAMES)
 """Names of the parameters that follow from the quantities of an arm without its load, except the taper."""
 NO_FORCE = FlutterForce(np.nan)
-"""Force (nan) of an arm without load, or to which the rod model does not apply."""
+"""Force (nan) of an arm without load, or of an arm to which the rod model does not apply."""
 
 
 def grid_of_arms(
@@ -41,11 +41,11 @@ def grid_of_arms(
     several values.
 
     given_parameters: values, (n,), of the parameters that replace the arm's parameters, by name. names: the
-    parameters of the task. find_force: force of first flutter of an arm, for relative loads.
+    parameters of the task. find_force: finds the force of first flutter of an arm, for relative loads.
     material: constitutive law and profile of all arms. Raises ValueError if the rod model applies to no
     point.
     """
-    arms, statuses = zip(*(_arm_or_status(arm_config, v) for v in arm_config.values_of_arms()), strict=True)
+    arms, statuses = zip(*(_arm_and_status(arm_config, v) for v in arm_config.values_of_arms()), strict=True)
     # The load is an axis of its own, as all loads on one arm share its search for flutter.
     loads = arm_config.quantity_axes[arm_config.load_key].array() if arm_config.load_key else np.zeros(1)
     grid = dict(zip(given_parameters, np.meshgrid(*given_parameters.values(), indexing="ij"), strict=True))
@@ -63,11 +63,11 @@ def grid_of_arms(
         # An arm that does not flutter has no load relative to flutter.
         table["F"] = np.where(np.isinf(unit_load_F), np.nan, unit_load_F) * _array_along(1, loads)
         if arm_config.load_key in LOAD_NAME_BY_RELATIVE_LOAD:
-            units[arm_config.load_name] = table["F"] * units[LOAD_SCALE_NAMES[arm_config.load_name]]
+            units[arm_config.load_name] = table["F"] * units[LOAD_SCALE_NAME_BY_LOAD[arm_config.load_name]]
     table |= {name: _array_along(2, column.ravel()) for name, column in grid.items()}
     materials = tuple(arm.material if arm else DEFAULT_MATERIAL for arm in arms if arm_config.is_nonuniform)
     if "F" in table:
-        ratios = material.relative_crushing_forces(table.get("taper", np.ones(1)))
+        ratios = material.crushing_forces_over_k1(table.get("taper", np.ones(1)))
         if materials:
             ratios = _quantity_of_arms(arms, lambda arm: arm.crushing_force / arm.k1)
         is_crushed = np.broadcast_to(table["F"] >= CRUSHED_FORCE_RATIO * table["k1"] * ratios, shape)
@@ -79,7 +79,7 @@ def grid_of_arms(
     values = axes | {name: column for name, column in given_parameters.items() if len(column) > 1}
     columns = tuple(np.broadcast_to(table[name], shape).ravel() for name in names)
     units = {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()}
-    failures = _search_failures(codes, forces)
+    failures = _flutter_search_failures(codes, forces)
     validity_codes = codes.astype(np.int8).ravel()
     return Points(names, columns, False, values, units, DEFAULT_MATERIAL, materials, validity_codes, failures)
 
@@ -89,7 +89,7 @@ def _quantity_of_arms(arms: Sequence[SlenderArm | None], quantity: Callable[[Sle
     return _array_along(0, [quantity(arm) if arm else np.nan for arm in arms])
 
 
-def _arm_or_status(arm_config: ArmConfig, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
+def _arm_and_status(arm_config: ArmConfig, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
     """Returns (arm without load, status code). The arm is None if the rod model does not apply. values:
     quantities of the arm in SI units, by name."""
     try:
@@ -104,8 +104,8 @@ def _F_of_unit_load_on_arms(
     tapers: Array | None,
     find_force: FlutterForceFinder,
 ) -> FlutterForceArray:
-    """Dimensionless force F of a unit load (see `_F_of_unit_load_on_arm`) on each arm. tapers: values, (n,),
-    that replace the arms' taper; None for no replacement."""
+    """Dimensionless F of a unit load (see `_F_of_unit_load_on_arm`), (arms, 1, n). tapers: n values that
+    replace the arms' taper; n = 1 without replacement if None, or if the load is not relative to flutter."""
     given_tapers = (
         [None]
         if tapers is None or arm_config.load_key not in LOAD_NAME_BY_RELATIVE_LOAD
@@ -131,7 +131,7 @@ def _F_of_unit_load_on_arm(
         return NO_FORCE
     if arm_config.load_key in LOAD_NAME_BY_RELATIVE_LOAD:
         return find_force(arm, taper)
-    return FlutterForce(1.0 / getattr(arm, LOAD_SCALE_NAMES[arm_config.load_name]))
+    return FlutterForce(1.0 / getattr(arm, LOAD_SCALE_NAME_BY_LOAD[arm_config.load_name]))
 
 
 def _with_flutter_codes(status_codes: Array, flutter_F: Array) -> Array:
@@ -144,9 +144,9 @@ def _with_flutter_codes(status_codes: Array, flutter_F: Array) -> Array:
     return result
 
 
-def _search_failures(status_codes: Array, forces: FlutterForceArray) -> dict[int, str]:
-    """Reasons why the search for flutter failed, by flat index of the point. status_codes: status codes,
-    (arms, loads, combinations of replaced parameters)."""
+def _flutter_search_failures(status_codes: Array, forces: FlutterForceArray) -> dict[int, str]:
+    """Reasons why the search for flutter failed, by flat index of the point. status_codes: (arms, loads,
+    combinations of replaced parameters). forces: result of `_F_of_unit_load_on_arms`."""
     force_of_points = np.broadcast_to(forces, status_codes.shape).ravel()
     return {
         int(index): force_of_points[index].failure
@@ -164,7 +164,7 @@ def _refuse_grid_without_rods(
     (n,), of the parameters that replace the arm's parameters, by name. has_arm_without_flutter: whether some
     arm does not flutter. forces: result of `_F_of_unit_load_on_arms`."""
     # The first arm is made once more, because its own message is better than a general one.
-    arm_config.arm_of(arm_config.first_values, with_load=True)
+    arm_config.arm_of(arm_config.first_si_values, with_load=True)
     for force in forces.ravel():
         if force.failure:
             raise ValueError(f"parameters.arm.{arm_config.load_name}: {force.failure}")

@@ -46,26 +46,27 @@ class CheckpointStore(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Chains:
-    """All chains, lines of points that start from a neighbour's solution, of a grid of shape `shape` along
-    its axis number `axis`. is_upward: whether points are solved in order of increasing values on the axis."""
+    """All chains of a grid of shape `shape` along its axis number `axis`. A chain is a line of points, each
+    started from its neighbour's solution. is_upward: whether points are solved in order of increasing values
+    on the axis."""
 
     shape: tuple[int, ...]
     axis: int
     is_upward: bool
 
     @property
-    def length(self) -> int:
+    def points_per_chain(self) -> int:
         """Number of points in a chain."""
         return self.shape[self.axis]
 
     @property
     def count(self) -> int:
         """Number of chains, numbered in row-major order of the remaining axes."""
-        return math.prod(self.shape) // self.length
+        return math.prod(self.shape) // self.points_per_chain
 
     def indices(self, chain_number: int) -> NDArray[np.int64]:
         """Flat indices of the points of a chain in the order of solution, shape (length,)."""
-        positions = np.arange(self.length)
+        positions = np.arange(self.points_per_chain)
         return indices_along(
             self.shape, self.axis, chain_number, positions if self.is_upward else positions[::-1]
         )
@@ -106,7 +107,7 @@ class ChainSolver:
         between costs a second solve of the point; in the reverse order the point could be lost.
         """
         order = list(map(int, self.sweep_chains.chains.indices(chain_number)))
-        first_position, state = self._resume(chain_number, order)
+        first_position, state = self._resume_position_and_state(chain_number, order)
         for index in order[first_position:]:
             if self.stop:
                 return
@@ -118,7 +119,7 @@ class ChainSolver:
                 self.checkpoints.write(chain_number, index, state)
         self.checkpoints.remove(chain_number)
 
-    def _resume(self, chain_number: int, order: list[int]) -> tuple[int, State]:
+    def _resume_position_and_state(self, chain_number: int, order: list[int]) -> tuple[int, State]:
         """Returns (position in the chain of the first point to solve, its initial state). order: flat indices
         of the points of the chain in the order of solution. The checkpoint is used if no point up to the
         checkpoint is missing; otherwise the chain starts again without an initial state."""

@@ -25,8 +25,9 @@ def read_points(
     path: Path, names: tuple[str, ...], material: RodMaterial = DEFAULT_MATERIAL
 ) -> tuple[Array, ...]:
     """Columns, (points,) each, of a CSV file that lists points, in the order of the parameters `names`. The
-    header has the same names in any order. Raises InputError for an unreadable file, a wrong header, a file
-    without points, or parameter values outside the model."""
+    header has the same names in any order. material: constitutive law and profile of the rods. Raises
+    InputError for an unreadable file, a wrong header, a file without points, or parameter values outside the
+    model."""
     try:
         if path.exists() and not path.is_file():  # opening a pipe would wait for its other end
             raise InputError(f"parameters.points: {path} is not a file")

@@ -41,14 +41,18 @@ def rods_needing_flutter_force(
 ) -> list[Rod]:
     """The distinct rods whose flutter forces the points of an arm need; empty if the load is not relative to
     flutter. material: constitutive law and profile from the config section `material`, None if the section is
-    not given. Raises InputError for an invalid arm."""
+    not given. tapers: each replaces the arm's taper in turn. Raises InputError for an invalid arm."""
     if arm_config is None or arm_config.load_key not in LOAD_NAME_BY_RELATIVE_LOAD:
         return []
-    from ...verdict.relative_load import rods_by_plane
+    from ...verdict.relative_load import rods_and_force_scales_by_plane
 
     shapes = ((arm, taper) for arm in _unloaded_arms(arm_config) for taper in tapers)
     # A mapping drops equal rods and keeps their order, which must be the same on all ranks.
-    return list(dict.fromkeys(rod for arm, taper in shapes for rod, _ in rods_by_plane(arm, material, taper)))
+    return list(
+        dict.fromkeys(
+            rod for arm, taper in shapes for rod, _ in rods_and_force_scales_by_plane(arm, material, taper)
+        )
+    )
 
 
 def _unloaded_arms(arm_config: ArmConfig) -> Iterable[SlenderArm]:
@@ -84,10 +88,10 @@ def smallest_flutter_force_of_arm(
     flutter_forces: forces of all rods of `rods_needing_flutter_force`. material: constitutive law and profile
     from the config section `material`, None if the section is not given.
     """
-    from ...verdict.relative_load import rods_by_plane
+    from ...verdict.relative_load import rods_and_force_scales_by_plane
 
     flutter_force = inf
-    for rod, scale in rods_by_plane(arm, material, taper):
+    for rod, scale in rods_and_force_scales_by_plane(arm, material, taper):
         rod_force = flutter_forces[rod]
         # The failed plane might have the smaller force, so the other plane alone proves nothing.
         if rod_force.failure:

@@ -20,7 +20,7 @@ MAX_GROUP_POINTS = 128
 longer groups would leave fewer work items to the ranks."""
 MIN_GROUP_AXIS_VALUES = 8
 """Minimum number of values on the axis of groups. On a shorter axis, neighbouring points differ too much."""
-GROUPS_TESTED_AT_ONCE = 1 << 12
+GROUPS_PER_MISSING_POINT_TEST = 1 << 12
 """Number of groups tested for missing points in a single array operation, which bounds the memory."""
 
 
@@ -45,8 +45,8 @@ GroupSolveFunction = Callable[[NDArray[np.int64]], GroupResult]
 
 @dataclass(frozen=True, slots=True)
 class PointGroups:
-    """All groups, runs of neighbouring points along one axis whose eigenvalues are followed from point to
-    point, of a grid of shape `shape` along its axis number `axis`."""
+    """All groups of a grid of shape `shape` along its axis number `axis`. A group is a run of neighbouring
+    points whose eigenvalues are followed from point to point."""
 
     shape: tuple[int, ...]
     axis: int
@@ -71,8 +71,8 @@ class PointGroups:
         )
         return indices_along(self.shape, self.axis, line, positions)
 
-    def missing_counts(self, groups: IndexRange, missing: IndexSet) -> NDArray[np.int64]:
-        """Number of points in `missing` of each group in a range of group numbers, (groups,)."""
+    def missing_point_counts(self, groups: IndexRange, missing: IndexSet) -> NDArray[np.int64]:
+        """For each group in a range of group numbers, how many of its points are in `missing`, (groups,)."""
         position_of_group, line = np.divmod(np.arange(*groups)[:, None], self.line_count)
         positions = position_of_group * MAX_GROUP_POINTS + np.arange(MAX_GROUP_POINTS)
         index = indices_along(self.shape, self.axis, line, positions)
@@ -85,9 +85,9 @@ class PointGroups:
             return [(0, self.count)]
         missing_points = IndexSet(missing)
         ranges: list[IndexRange] = []
-        for start in range(0, self.count, GROUPS_TESTED_AT_ONCE):
-            end = min(start + GROUPS_TESTED_AT_ONCE, self.count)
-            incomplete = self.missing_counts((start, end), missing_points) > 0
+        for start in range(0, self.count, GROUPS_PER_MISSING_POINT_TEST):
+            end = min(start + GROUPS_PER_MISSING_POINT_TEST, self.count)
+            incomplete = self.missing_point_counts((start, end), missing_points) > 0
             edges = start + np.flatnonzero(np.diff(incomplete, prepend=False, append=False))
             ranges += zip(map(int, edges[::2]), map(int, edges[1::2]), strict=True)
         return merged_ranges(ranges)
@@ -98,14 +98,14 @@ class PointGroups:
         missing_points = IndexSet(missing)
         missing_count = 0
         for start, end in groups:
-            for block_start in range(start, end, GROUPS_TESTED_AT_ONCE):
-                block = (block_start, min(block_start + GROUPS_TESTED_AT_ONCE, end))
-                missing_count += int(self.missing_counts(block, missing_points).sum())
+            for block_start in range(start, end, GROUPS_PER_MISSING_POINT_TEST):
+                block = (block_start, min(block_start + GROUPS_PER_MISSING_POINT_TEST, end))
+                missing_count += int(self.missing_point_counts(block, missing_points).sum())
         return missing_count
 
 
 def groups_along_longest_axis(shape: tuple[int, ...], varied_parameters: Sequence[str]) -> PointGroups | None:
-    """Groups of a grid along the first of its longest usable axes; None if no usable axis has
+    """Groups of a grid along the first of its longest usable axes; None if no usable axis has at least
     MIN_GROUP_AXIS_VALUES values. shape: shape of the grid. varied_parameters: the only parameter that varies
     along each axis; "" for an axis of several parameters, which is not usable."""
     followable_axes = [axis for axis, name in enumerate(varied_parameters) if name]
@@ -116,13 +116,13 @@ def groups_along_longest_axis(shape: tuple[int, ...], varied_parameters: Sequenc
 @dataclass(frozen=True, slots=True)
 class GroupSolver:
     """Function from the number of a group of points to the results of its missing points. groups: all groups
-    of the grid. solve_group: solves the points of a group together. solve: solves a point, given its flat
-    index, that could not be solved together with its group. missing_points: flat indices of the missing
+    of the grid. solve_group: solves the points of a group together. solve_single_point: solves the point at a
+    flat index, if it could not be solved together with its group. missing_points: flat indices of the missing
     points."""
 
     groups: PointGroups
     solve_group: GroupSolveFunction
-    solve: Callable[[int], Any]
+    solve_single_point: Callable[[int], Any]
     missing_points: IndexSet
 
     def __call__(self, group_number: int) -> Iterator[tuple[NDArray[np.int64] | int, Any]]:
@@ -136,4 +136,4 @@ class GroupSolver:
         if len(solved_indices):
             yield indices[solved_indices], result.part_at(solved_indices)
         for index in indices[missing & ~result.is_solved].tolist():
-            yield index, self.solve(index)
+            yield index, self.solve_single_point(index)

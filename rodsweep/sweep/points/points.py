@@ -39,8 +39,8 @@ class Points:
     arm_units: dict[str, Array] = field(default_factory=dict)
     """The arm's units of time, force and pressure at every point of a grid over its quantities, (points,)."""
     material: RodMaterial = DEFAULT_MATERIAL
-    """Constitutive law and profile of all rods, unless `materials` is given."""
-    materials: tuple[RodMaterial, ...] = ()
+    """Constitutive law and profile of all rods, unless `arm_materials` is given."""
+    arm_materials: tuple[RodMaterial, ...] = ()
     """Constitutive law and profile of each arm of a grid over an arm's quantities, in the order of the
     points. Every arm has the same number of consecutive points. Empty if all points have `material`."""
     validity_codes: NDArray[np.int8] | None = None
@@ -127,11 +127,13 @@ class Points:
         return Rod(**parameters, material=self.material_of(index))
 
     @property
-    def materials_of_rods(self) -> tuple[list[RodMaterial], NDArray[np.int64]]:
+    def distinct_materials_and_indices(self) -> tuple[list[RodMaterial], NDArray[np.int64]]:
         """Returns (distinct materials, index of the material of each point of
         `parameter_values_of_rods`, (rods,))."""
-        distinct_materials = list(dict.fromkeys(self.materials)) or [self.material]
-        material_of_arm = np.array([distinct_materials.index(material) for material in self.materials] or [0])
+        distinct_materials = list(dict.fromkeys(self.arm_materials)) or [self.material]
+        material_of_arm = np.array(
+            [distinct_materials.index(material) for material in self.arm_materials] or [0]
+        )
         material_indices = material_of_arm[np.arange(self.count) * len(material_of_arm) // self.count]
         return (
             distinct_materials,
@@ -142,7 +144,11 @@ class Points:
 
     def material_of(self, index: int) -> RodMaterial:
         """Constitutive law and profile of the rod of the point at a flat index."""
-        return self.materials[index * len(self.materials) // self.count] if self.materials else self.material
+        return (
+            self.arm_materials[index * len(self.arm_materials) // self.count]
+            if self.arm_materials
+            else self.material
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -38,8 +38,8 @@ def parameter_grid_size(config: Config) -> int:
 
 def points_of(config: Config, directory: Path, flutter_forces: FlutterForceByRod | None = None) -> Points:
     """Points of the sweep that a config describes; raises InputError for a parameter value outside the model,
-    and for an invalid file of points. directory: folder of relative file names. flutter_forces: flutter
-    forces of all rods of `rods_for_flutter_forces`; if None, this function computes the forces."""
+    and for an invalid file of points. directory: folder to which a relative file name refers. flutter_forces:
+    flutter forces of all rods of `rods_for_flutter_forces`; if None, this function computes the forces."""
     parameters = config.parameters
     for name, value in parameters.constant_parameters.items():
         require_in_range(PARAMETERS[name].allowed_range, name, (value,))
@@ -88,7 +88,7 @@ def _status_codes_if_some_crushed(axes: dict[str, Array], material: RodMaterial)
     columns = {
         name: axes[name].reshape([-1 if axis_name == name else 1 for axis_name in axes]) for name in axes
     }
-    ratios = material.relative_crushing_forces(columns.get("taper", np.ones(1)))
+    ratios = material.crushing_forces_over_k1(columns.get("taper", np.ones(1)))
     # The usual case, without an array for all points.
     if axes["F"].max() < axes["k1"].min() * ratios.min():
         return None
@@ -127,7 +127,7 @@ def refuse_invalid_axes(
 ) -> None:
     """Raises InputError if a value on an axis is outside the range of its parameter, or if rods are crushed.
     axes: values, (n,), by name of the parameter. allows_crushed_rods: whether some rods, but not all rods, of
-    the grid may be crushed."""
+    the grid may be crushed. material: constitutive law and profile of the rods."""
     for name, column in axes.items():
         require_in_range(PARAMETERS[name].allowed_range, name, column)
     if not set(FORCE_AND_STRETCH_STIFFNESS) <= axes.keys():
@@ -137,7 +137,7 @@ def refuse_invalid_axes(
         material.refuse_extreme_load(axes["F"], float(axes["k1"].min()), float(tapers.min()))
     except ValueError as error:
         raise InputError(f"parameters.{error}") from None
-    crushing_forces = material.relative_crushing_forces(tapers)
+    crushing_forces = material.crushing_forces_over_k1(tapers)
     if (crushing_forces == 1).all():
         _refuse_crushed(axes["F"], axes["k1"], allows_crushed_rods)
     elif allows_crushed_rods and axes["F"].min() >= axes["k1"].max() * crushing_forces.max():

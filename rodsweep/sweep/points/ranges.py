@@ -54,7 +54,7 @@ class IndexSet:
 
 @dataclass(frozen=True, slots=True)
 class Shard:
-    """Shard `number` of `shard_count` shards of a sweep, each solved by a separate run; 1/1 is all."""
+    """Shard `number`, from 1, of the `shard_count` shards of a sweep, each solved by a separate run."""
 
     number: int = 1
     shard_count: int = 1

@@ -84,11 +84,11 @@ def numbers_of_distinct_rods(points: Points) -> NDArray[np.int64] | None:
     if not points.arm_axes:
         return None
     columns = list(points.columns)
-    if points.materials:
-        material_numbers = {material: float(i) for i, material in enumerate(points.materials)}
-        points_per_rod = points.count // len(points.materials)
+    if points.arm_materials:
+        material_numbers = {material: float(i) for i, material in enumerate(points.arm_materials)}
+        points_per_rod = points.count // len(points.arm_materials)
         columns.append(
-            np.repeat([material_numbers[material] for material in points.materials], points_per_rod)
+            np.repeat([material_numbers[material] for material in points.arm_materials], points_per_rod)
         )
     table = np.stack(columns, axis=-1)
     rods = np.unique(np.nan_to_num(table, nan=-1.0), axis=0, return_inverse=True)[1].ravel()
@@ -146,7 +146,7 @@ class SolverSkippingPointsOutsideModel:
         values to the other points."""
         changed = {
             "file_values_of_outcome": self._file_values_of_outcome,
-            "statuses": (*self.rod_solver.statuses, *OutsideModelStatus),
+            "possible_statuses": (*self.rod_solver.possible_statuses, *OutsideModelStatus),
         }
         return self.rod_solver.with_wrapper(self._solve, self._solve_group, **changed)
 

@@ -40,8 +40,8 @@ STATUSES_TREATED_AS_REST: dict[str, tuple[str, ...]] = {
     "thresholds": ("accuracy_not_reached", "list_full"),
     "phase_diagram": ("accuracy_not_reached", "special_undecided", "special_full"),
 }
-"""Unsuccessful statuses for which an arm without a stored Hopf point is nevertheless treated as at rest, by
-task."""
+"""Unsuccessful statuses, by task, for which an arm without a stored Hopf point is nevertheless treated as at
+rest."""
 DIAGRAM_CLASSES_WITH_POSSIBLE_FLUTTER = [
     value for value, name in STABILITY_CLASSES if name in ("flutter", "undecided")
 ]
@@ -74,8 +74,8 @@ def _motion_of_modes(record: ValuesByVariable) -> ArmMotion:
 
 
 def _motion_at_hopf_point_function(F_name: str) -> Callable[[ValuesByVariable], ArmMotion]:
-    """Function from a record to the motion at the first Hopf point; frequency and F are NaN without Hopf
-    point."""
+    """Function from a record to the motion at the first Hopf point; frequency and F are NaN without a Hopf
+    point. F_name: variable with the forces of the crossings."""
 
     def motion(record: ValuesByVariable) -> ArmMotion:
         is_hopf = np.isin(record["crossing_kind"], HOPF_CROSSING_CODES)
@@ -112,7 +112,7 @@ def _motion_of_cycle(record: ValuesByVariable) -> ArmMotion:
     return ArmMotion(frequency, None, np.where(np.isfinite(amplitude), amplitude, 0.0), is_cycle=True)
 
 
-def _motions_on_all_branches(record: ValuesByVariable) -> ArmMotion:
+def _cycle_motions_of_all_branches(record: ValuesByVariable) -> ArmMotion:
     """Motions on the cycles of all branches."""
     period, F, amplitude = (np.asarray(record[name], float) for name in ("period", "branch_F", "tip_y_max"))
     return ArmMotion(2 * pi / period, F, amplitude, is_cycle=True)
@@ -125,7 +125,7 @@ MOTION_OF_TASK: dict[str, Callable[[ValuesByVariable], ArmMotion]] = {
     "criticality": _motion_at_hopf_point_function("crossing_F"),
     "phase_diagram": _motion_of_row,
     "limit_cycle": _motion_of_cycle,
-    "branch": _motions_on_all_branches,
+    "branch": _cycle_motions_of_all_branches,
 }
 """Function from the variables of a point to the motions of the arm, by task."""
 
@@ -179,8 +179,8 @@ class ArmValidity:
     ) -> dict[str, Any]:
         drag = arm.chosen_drag if "drag" in self.points.arm_axes else smallest_drag(arm)
         rate = motion.frequency / arm.tau2_with(drag)
-        F = self._force_scaled_to_arm_stiffness(arm, motion, index)
-        base_force = self._force_compressing_base_equally(F, index)
+        F = self._force_times_arm_over_given_k1(arm, motion, index)
+        base_force = self._force_of_equal_base_compression(F, index)
         effects = neglected_effects(arm, rate, base_force, drag=drag, amplitude=motion.amplitude)
         relevant = [effect for effect in effects if motion.is_cycle or not effect.is_of_cycles_only]
         excesses = np.array([effect.value_over_limit for effect in relevant])  # (effects, n, ...)
@@ -206,7 +206,7 @@ class ArmValidity:
             "neglected_excess": np.where(is_known & (at_worst >= 0), at_worst, np.nan),
         }
 
-    def _force_scaled_to_arm_stiffness(
+    def _force_times_arm_over_given_k1(
         self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]
     ) -> Array:
         """F, multiplied by (arm's k1)/(k1 in the config) if the config gives k1 in addition to the arm; NaN
@@ -218,7 +218,7 @@ class ArmValidity:
         k1 = k1.reshape(k1.shape + (1,) * (np.ndim(F) - k1.ndim))
         return np.asarray(F) * (arm.k1 / k1)
 
-    def _force_compressing_base_equally(self, F: Array, index: int | NDArray[np.int64]) -> Array:
+    def _force_of_equal_base_compression(self, F: Array, index: int | NDArray[np.int64]) -> Array:
         """The force that would compress the base as much as F compresses the weakest section; NaN for rubber,
         whose constitutive law includes large compression. F, index: forces, and indices of their points, as
         in `variables_of_points`."""
@@ -226,7 +226,7 @@ class ArmValidity:
         if material.law != LINEAR_CONSTITUTIVE_LAW.law_name:
             return np.full(np.shape(F), np.nan)
         tapers = self._parameter_values("taper", index)
-        ratios = material.relative_crushing_forces(np.ones(()) if tapers is None else tapers)
+        ratios = material.crushing_forces_over_k1(np.ones(()) if tapers is None else tapers)
         return np.asarray(F) / ratios.reshape(ratios.shape + (1,) * max(np.ndim(F) - ratios.ndim, 0))
 
     def _parameter_values(self, name: str, index: int | NDArray[np.int64]) -> Array | None:

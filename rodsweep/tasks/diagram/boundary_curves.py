@@ -14,15 +14,15 @@ from .curve_variables import bautin_curve_values
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import ParameterPlane
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
-    from ...solve.continuation.curve_search import TracedCurves
+    from ...solve.continuation.curves_through_seeds import TracedCurves
     from ...solve.hopf.bautin_points import CurveCriticality
 
 
 def boundary_curves(
     plane: "ParameterPlane", view: ResultView, rows: np.ndarray
 ) -> "TracedCurves[BoundaryCurve]":
-    """Boundary curves through the crossings of all rows with a finite value. rows: parameter value of
-    every row, (rows,).
+    """Boundary curves through the crossings of all rows with a finite value. view: the file with all rows.
+    rows: parameter value of every row, (rows,).
     """
     from ...solve.changes.diagram.boundaries import boundary_curves_through, seed_of
 
@@ -68,9 +68,9 @@ def generalised_hopf_curves(
     third_axis: tuple[str, Axis],
     accuracy: float,
 ) -> list[FilledVariable]:
-    """Curves of generalised Hopf points along a third parameter, as variables of the file. criticalities: of
-    the Hopf curves of the plane. accuracy: relative accuracy of the linear results. third_axis: name and
-    values of the third parameter.
+    """Curves of generalised Hopf points along a third parameter, as variables of the file. criticalities:
+    criticality of each boundary curve of the plane. accuracy: relative accuracy of the linear results.
+    third_axis: name and values of the third parameter.
     """
     from ...determinant.parameter_plane import PlaneAxis
     from ...solve.hopf.bautin_curves import (
@@ -87,9 +87,9 @@ def generalised_hopf_curves(
     all_values = np.append(values, value_in_plane)
     space = BautinProblem(plane.rod, (*plane.axes, plane_axis), all_values, accuracy)
     curves: list[BautinCurve] = []
-    points_of_plane = [point for curve in criticalities for point in curve.points]
+    points_of_plane = [point for curve in criticalities for point in curve.bautin_points]
     for start in [space.as_curve_point(point, 2, value_in_plane) for point in points_of_plane]:
         # A curve may return to the plane: its further points need no curve of their own.
         if not any(lies_on_curve(start, curve) for curve in curves):
             curves.append(bautin_curve(space, start))
-    return bautin_curve_values(curves, (plane.axes[0].name, plane.axes[1].name), name)
+    return bautin_curve_values(curves, (plane.axes[0].parameter_name, plane.axes[1].parameter_name), name)

@@ -18,9 +18,9 @@ from ...results.layouts.fold_curve_extrema import UNLOCATED_EXTREMA_VARIABLE, fo
 from ...results.layouts.phase_diagram import (
     CYCLE_SPECIAL_DIMENSION,
     MAX_CYCLE_SPECIAL_POINTS,
-    curve_variables,
+    boundary_curve_variables,
     cycle_curve_variables,
-    cycle_variables,
+    cycle_row_variables,
 )
 from ...results.layouts.variables import FilledVariable, Variable, outcome_values, value_lists
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from ...solve.branch.coexistence import CoexistenceRow
     from ...solve.branch.special.special_curves import SpecialPointCurve
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
-    from ...solve.continuation.curve_search import TracedCurves
+    from ...solve.continuation.curves_through_seeds import TracedCurves
     from ...solve.hopf.bautin_curves import BautinCurve
     from ...solve.hopf.bautin_points import CurveCriticality
 
@@ -41,9 +41,9 @@ def fold_curve_extremum_values(
     are none. plane: (parameter along a row, parameter that differs between rows)."""
     points = [(number, p) for number, curve in enumerate(traced.curves, 1) for p in curve.points]
     rows = [
-        (number, p.parameter_value, p.row_parameter_value, p.error, p.row_parameter_error_at_extremum)
+        (number, p.parameter_value, p.row_parameter_value, p.error, row_error)
         for number, p in points
-        if p.row_parameter_error_at_extremum > 0
+        if (row_error := p.row_parameter_error_at_extremum) > 0
     ]
     variables = fold_curve_extremum_variables(*plane).values() if rows else ()
     columns = zip(variables, zip(*rows, strict=True), strict=True)
@@ -69,12 +69,12 @@ def boundary_curve_values(
             columns = dict(zip(("frequency", "growth_rate", *plane), numbers, strict=True)) | reasons
             points.append((SimpleNamespace(number=number, kind=curve.consists_of_hopf_points, **columns),))
         folds += [
-            _point_with_named_values(
+            _named_values_and_point(
                 fold, plane, curve=number, kind=curve.consists_of_hopf_points, of=fold.axis
             )
             for fold in curve.folds
         ]
-    declared = curve_variables(*plane)
+    declared = boundary_curve_variables(*plane)
     values = _values_along_dimension(declared, "curve_point", "curve_", points)
     values |= _values_along_dimension(declared, "fold", "fold_", folds)
     values |= {
@@ -94,9 +94,9 @@ def criticality_and_bautin_values(
     rows = []
     start = 0
     for number, curve in enumerate(criticalities, 1):
-        for point in curve.points:
+        for point in curve.bautin_points:
             rows.append(
-                _point_with_named_values(
+                _named_values_and_point(
                     point, plane, curve=number, curve_point=start + point.preceding_index + 1
                 )
             )
@@ -117,7 +117,7 @@ def bautin_curve_values(
     (parameter along a row, parameter that differs between rows).
     """
     rows = [
-        _point_with_named_values(point, (*plane, third_parameter), curve=number, **reasons)
+        _named_values_and_point(point, (*plane, third_parameter), curve=number, **reasons)
         for number, curve in enumerate(curves, 1)
         for point, reasons in zip(
             curve.points, _end_reasons(curve.end_reasons, len(curve.points)), strict=True
@@ -153,7 +153,7 @@ def fold_and_torus_curve_values(
     return _variables_with_values(variables, values)
 
 
-def _point_with_named_values(point: Any, names: Sequence[str], **extra_values: Any) -> tuple[Any, ...]:
+def _named_values_and_point(point: Any, names: Sequence[str], **extra_values: Any) -> tuple[Any, ...]:
     """Returns (object, point). The attributes of the object are the point's parameter values and errors,
     under `names`, and the values in `extra_values`."""
     errors = {f"{name}_error": error for name, error in zip(names, point.parameter_errors, strict=True)}
@@ -204,7 +204,7 @@ def row_cycle_values(result: "CoexistenceRow", line_parameter: str) -> dict[str,
     """
     variables = [
         variable
-        for variable in cycle_variables(line_parameter)
+        for variable in cycle_row_variables(line_parameter)
         if variable.extra_dimensions == (CYCLE_SPECIAL_DIMENSION,)
     ]
     attribute_names = {f"cycle_special_{line_parameter}": "parameter_value"}
@@ -235,12 +235,12 @@ def with_ends_on_hopf_curves(
     criticalities: "Sequence[CurveCriticality]",
     unstored: int,
 ) -> "TracedCurves[SpecialPointCurve]":
-    """The curves in `traced`, with ends at generalised Hopf points replaced by the points located on Hopf
-    curves. criticalities: criticality along each boundary curve. unstored: number of special points that are
+    """The curves in `traced`; an end at a generalised Hopf point is replaced by the point located on the Hopf
+    curve. criticalities: criticality along each boundary curve. unstored: number of special points that are
     not stored, added to `untraced_seed_count`.
     """
     from ...solve.branch.special.special_curves import with_bautin_ends
 
-    bautin_points = [point for curve in criticalities for point in curve.points]
+    bautin_points = [point for curve in criticalities for point in curve.bautin_points]
     curves = tuple(with_bautin_ends(curve, plane, bautin_points) for curve in traced.curves)
     return replace(traced, curves=curves, untraced_seed_count=traced.untraced_seed_count + unstored)

@@ -1,5 +1,5 @@
-"""Special points on the rows of a phase diagram, rows whose stable states change because curves of folds or
-torus points lead to further branches of cycles, and the corresponding variables of the file."""
+"""Special points on the rows of a phase diagram, and the rows whose stable states change because curves of
+folds or torus points lead to further branches of cycles; the corresponding variables of the file."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 COMPLETE_ROW_STATUS = "ok"
 """Status of the rows on which every branch from a Hopf point is followed to its end, and all special points
-are located; on other rows a special point might be taken for one of another branch."""
+are located; on other rows a special point might be taken for a special point of another branch."""
 ROW_MESSAGE_ARRAY_NAME = "message"
 """Name under which the result of a row that was solved again has its message, as bytes."""
 
@@ -36,8 +36,8 @@ def row_message(result: NamedArrays) -> str:
 def special_points_of_rows(
     view: ResultView, line_parameter: str, rows: np.ndarray
 ) -> "list[RowSpecialPoint]":
-    """Folds and torus points of all rows of the file with a finite parameter value. line_parameter: parameter
-    along the rows. rows: parameter value of every row, (rows,).
+    """Folds and torus points of all rows with a finite parameter value. view: the file with all rows.
+    line_parameter: parameter along the rows. rows: parameter value of every row, (rows,).
     """
     columns = {name: view.flattened_by_point(name) for name in _special_point_names(line_parameter)}
     return [
@@ -79,8 +79,9 @@ def _special_point_names(line_parameter: str) -> list[str]:
 def rows_with_branches_across_limits(
     view: ResultView, line_parameter: str, rows: Mapping[int, float], limits: tuple[float, float]
 ) -> dict[int, float]:
-    """The rows of `rows` with branches that leave or enter the range `limits`; values of the row parameter by
-    index of the row. view: the file with all rows. line_parameter: parameter along the rows."""
+    """The rows of `rows` with branches that leave or enter the range `limits` of `line_parameter`. rows,
+    result: value of the row's parameter by index of the row. view: the file with all rows. line_parameter:
+    parameter along the rows."""
     from ...solve.branch.special.special_curves import CURVE_IDENTITY_SETTINGS
     from ...solve.branch.special.special_point import SpecialPointKind
 

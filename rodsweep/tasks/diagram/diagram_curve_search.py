@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from ..phase_diagram import PhaseDiagramTask
 
 RowAndStartingPointCount = tuple[int, int]
-"""(number of a row, number of special points from which its branches are followed beside Hopf points)."""
+"""(number of a row, number of special points, besides Hopf points, from which its branches are followed)."""
 MAX_CACHED_ROWS = 200
 """Maximum number of rows whose special points are cached in a process, because the cycles of a row take up to
 a megabyte. Special points of further rows are computed again, in some seconds and with equal results."""
@@ -67,7 +67,7 @@ class DiagramCurveSolver:
     )
     """Special points of cycles of the rows solved in this process."""
 
-    def cache_row(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
+    def cache_special_points_of_row(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
         """Returns `row` unchanged, after caching its special points if fewer than MAX_CACHED_ROWS rows are
         cached. number: number of the row.
         """
@@ -75,7 +75,7 @@ class DiagramCurveSolver:
             self.special_points_by_row[number, 0] = row.special_points + row.folds_beyond_range
         return row
 
-    def cached_starts(
+    def cached_branch_starts(
         self, items: "DiagramStage", item_numbers: Sequence[int]
     ) -> "dict[RowAndStartingPointCount, Any]":
         """Special points cached on this rank, by row, for the rows on which the half curves numbered
@@ -90,7 +90,7 @@ class DiagramCurveSolver:
         }
         return {key: self.special_points_by_row[key] for key in keys if key in self.special_points_by_row}
 
-    def add_starts(self, starts: "Mapping[RowAndStartingPointCount, Any]") -> None:
+    def cache_starts(self, starts: "Mapping[RowAndStartingPointCount, Any]") -> None:
         """Caches special points of rows solved on other ranks."""
         self.special_points_by_row.update(starts)
 
@@ -121,7 +121,7 @@ class DiagramCurveSolver:
             special_points_of_rows(view, line_parameter, row_values),
             {int(number): float(row_values[number]) for number in complete},
         )
-        low, high = self._line_limits
+        low, high = self._limits_along_row
         return DiagramStages(
             tracer,
             lambda number, values: special_points_of_row(values, line_parameter, number, row_values[number]),
@@ -132,9 +132,9 @@ class DiagramCurveSolver:
         )
 
     @property
-    def _line_limits(self) -> tuple[float, float]:
+    def _limits_along_row(self) -> tuple[float, float]:
         """Smallest and largest value of the parameter along the rows."""
-        values = self.task.line_values
+        values = self.task.values_along_row
         return float(values.min()), float(values.max())
 
     def solve_item(self, items: "DiagramStage", item: int) -> dict[str, np.ndarray]:
@@ -144,9 +144,9 @@ class DiagramCurveSolver:
         from ...solve.branch.special.detached_rows import RowsWithDetachedBranches
         from ...solve.branch.special.folds_beyond_range import FoldsBeyondRange
 
-        forget_arm_determinants()  # made for the rows, of which each rank solves others
+        forget_arm_determinants()  # made for the rows, which differ between ranks
         if isinstance(items, FoldsBeyondRange):
-            return items.solve(item, partial(self._special_points, items), self._line_limits)
+            return items.solve(item, partial(self._special_points, items), self._limits_along_row)
         if not isinstance(items, RowsWithDetachedBranches):
             return items.solve(item, partial(self._special_points, items), self.workspace)
         row_index = items.row_index_of_item(item)
@@ -190,14 +190,14 @@ class DiagramCurveSolver:
         criticalities = criticality_along(plane, traced, accuracy) if needs_criticality else []
         if options.criticality:
             variables += criticality_and_bautin_values(criticalities, plane_names, self.task.config.gamma1)
-        if options.bautin_parameter is not None:
-            variables += generalised_hopf_curves(plane, criticalities, options.bautin_parameter, accuracy)
+        if options.bautin_name_and_axis is not None:
+            variables += generalised_hopf_curves(plane, criticalities, options.bautin_name_and_axis, accuracy)
         stages = self._stages(view)
         if stages is None:
             return SweepWideResult(variables)
         unstored = unstored_special_point_count(view, self._is_row_parameter_finite)
         curves = with_ends_on_hopf_curves(stages.curves(results), plane, criticalities, unstored)
-        changed = rows_changed_when_solved_again(view, stages.rows_solved_again(results))
+        changed = rows_changed_when_solved_again(view, stages.variables_of_rows_solved_again(results))
         variables += [
             *fold_and_torus_curve_values(curves, plane_names),
             *fold_curve_extremum_values(curves, plane_names),
@@ -228,7 +228,7 @@ class DiagramCurveSolver:
         }
         abscissa, ordinate = (
             PlaneAxis(name, float(values[0]), float(values[-1]), axes[name].is_logarithmic)
-            for name, values in ((line_parameter, self.task.line_values), (row_parameter, finite))
+            for name, values in ((line_parameter, self.task.values_along_row), (row_parameter, finite))
         )
         rod = Rod(**not_crushed, gamma1=self.task.config.gamma1, material=self.task.config.rod_material)
         return ParameterPlane(rod, (abscissa, ordinate))
@@ -237,7 +237,7 @@ class DiagramCurveSolver:
         self, items: "SpecialCurveTracer | FoldsBeyondRange", number: int
     ) -> "tuple[SpecialPoint, ...]":
         """Special points of the branches of the row `number`, within the range and beyond, cached or computed
-        again. items: half curves that start at these points, or rows."""
+        again; () if the row's rod is crushed. items: half curves that start at these points, or rows."""
         from ...solve.branch.coexistence import row_branches, special_points_of
 
         starts = items.branch_starts_of_row(number)

@@ -1,15 +1,16 @@
 """Onset of oscillation between two forces, far from each other, of a file of spectra.
 
-Newton's method for the double eigenvalue needs a good guess. Where it fails, or finds other eigenvalues than
-the leading ones, the leading eigenvalues at the middle force, on a mesh, halve the interval. Only NumPy is
-needed, so that files can be merged without PETSc.
+Newton's method for the double eigenvalue needs a good guess. Where Newton's method fails, or finds
+eigenvalues other than the leading ones, the interval is halved: the leading eigenvalues at the middle force,
+computed on a mesh, show which half contains the onset. Only NumPy is needed, so that files can be merged
+without PETSc.
 """
 
 import numpy as np
 
 from ...arrays import Complex
 from ...determinant.stability_changes import (
-    CoefficientsAlongForce,
+    CoefficientsLinearInForce,
     StabilityChange,
     oscillation_onset_between,
 )
@@ -30,7 +31,7 @@ MESH_ACCURACY = 1e-6
 
 
 def locate_oscillation_onset(
-    rods: CoefficientsAlongForce,
+    rods: CoefficientsLinearInForce,
     rod: Rod,
     end_forces: tuple[float, float],
     lower_eigenvalues: Complex,
@@ -39,9 +40,9 @@ def locate_oscillation_onset(
     """The force between the forces `end_forces` at which the two leading real eigenvalues merge into a pair;
     None if no such force is found.
 
-    rods: coefficients of `rod` at F = 0, and their derivative by F. lower_eigenvalues, upper_eigenvalues:
-    leading eigenvalues at the first and second force, (modes,); the leading eigenvalue is real at the first
-    force and complex at the second.
+    rods: coefficients of `rod` at F = 0, and their derivatives with respect to F. lower_eigenvalues,
+    upper_eigenvalues: leading eigenvalues at the first and second force, (modes,); the leading eigenvalue is
+    real at the first force and complex at the second.
     """
     low, high = end_forces
     for _ in range(1 + MAX_HALVINGS):

@@ -22,7 +22,7 @@ from ...results.layouts.variables import FilledVariable
 from ...sweep.points.points import Points, lines_along
 
 MAX_POINTS_IN_MEMORY = 1 << 13
-"""Maximum number of points whose eigenvalues are read at once; this limits memory for large files."""
+"""Maximum number of points of a grid that are read at once to limit memory, except if one slice has more."""
 MAX_SPACING_TO_FORCE_RANGE_RATIO = 0.02
 """Two neighbouring forces are far from each other if their difference exceeds this share of the range of all
 forces."""

@@ -1,5 +1,6 @@
 """Results of a job in memory, without a file: as a `ResultView`, and as variables with attributes.
-`solve_job_in_memory` also solves jobs without chains and without variables that depend on all points."""
+`solve_job_in_memory` first solves the job, which must have no chains and no variables that depend on all
+points."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -62,7 +63,7 @@ def view_in_memory(
     values: variables of the layout by name, shape (points, own dimensions). sweep_wide: variables that do not
     belong to single points, with values.
     """
-    coordinates, variables = stored_variables(plan, values, sweep_wide)
+    coordinates, variables = stored_coordinates_and_variables(plan, values, sweep_wide)
     return ResultView(
         Path(job.title),
         {"task": job.config.task, "config_resolved": json.dumps(plan.config)},
@@ -79,15 +80,15 @@ def view_in_memory(
     )
 
 
-def stored_variables(
+def stored_coordinates_and_variables(
     plan: FilePlan, values: Mapping[str, np.ndarray], sweep_wide: Sequence[FilledVariable]
 ) -> tuple[dict[str, StoredVariable], dict[str, StoredVariable]]:
     """Returns (coordinates, variables) of the file of a plan, by name. values: variables of the layout by
-    name, shape (points, own dimensions)."""
+    name, shape (points, own dimensions). sweep_wide: as in `view_in_memory`."""
     coordinates = _coordinates(plan)
     variables: dict[str, StoredVariable] = {}
     for variable in plan.layout.variables:
-        dimensions = (*plan.dimensions, *variable.extra_dimensions)
+        dimensions = (*plan.point_dimension_names, *variable.extra_dimensions)
         variables[variable.name] = (dimensions, values[variable.name], variable.attributes)
     for variable, array in sweep_wide:
         data = array.astype(variable.dtype)

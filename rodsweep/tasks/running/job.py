@@ -43,7 +43,7 @@ MAX_POINT_RESULT_BYTES = 100_000_000
 class Job:
     """A validated config with its points, its task and the layout of its results."""
 
-    path: Path
+    config_path: Path
     """Path of the config file; for a call in Python, a path with the name of the task."""
     config: Config
     given_config: str | dict[str, Any]
@@ -63,7 +63,7 @@ class Job:
     @property
     def title(self) -> str:
         """The title of the config; if the title is empty, the name of the config file."""
-        return self.config.title or self.path.stem
+        return self.config.title or self.config_path.stem
 
     @property
     def quantity_variables(self) -> tuple[FilledVariable, ...]:
@@ -97,7 +97,7 @@ class Job:
         layout = LAYOUT_MAKERS[self.config.task](self.resolved_config)
         quantities = quantities_at_points(self.quantity_variables, self.points)
         is_force = load_kind_of(self.resolved_config["parameters"]["arm"]) == "force"
-        validity = ArmValidity(self.config, self.points, solver.statuses)
+        validity = ArmValidity(self.config, self.points, solver.possible_statuses)
 
         def complete(values: dict[str, Any], index: int | NDArray[np.int64]) -> dict[str, Any]:
             in_si = si_values(values, index, layout, quantities, is_force)
@@ -142,7 +142,7 @@ def job_of_config(
     None: the forces are computed here. Raises InputError if the axes do not fit into memory, or the results
     into a file, or if the results of one point exceed MAX_POINT_RESULT_BYTES.
     """
-    # Checked before arrays are made.
+    # Checked before arrays are created.
     axis_value_count = sum(axis.size for axis in config.parameters.axes.values())
     if axis_value_count * SETUP_BYTES_PER_AXIS_VALUE > machine_memory():
         raise InputError(
@@ -176,7 +176,7 @@ def _refuse_search_beyond_law_limits(task: Task, points: Points) -> None:
     """Raises InputError if a search compresses or stretches rubber beyond the limits of its law."""
     if not isinstance(task, CertifiedTask) or not task.searched_range_ends():
         return
-    values = task.parameter_values
+    values = task.parameter_values_with_searches
     if not (values["F"].size and values["k1"].size):
         return
     taper = values["taper"].min() if "taper" in values else 1.0
@@ -209,7 +209,8 @@ def _file_plan_of_task(task: Task, document: dict[str, Any], layout: Layout) -> 
 
 
 def plan_in_memory(job: Job, statuses: Sequence[PointStatus]) -> FilePlan:
-    """Plan of the results of a job with these statuses, without the attributes of a file."""
+    """Plan of the results of a job, without the attributes of a file. statuses: all statuses that a point can
+    have."""
     flags = tuple((int(status), status.name) for status in statuses)
     return replace(
         _file_plan_of_task(job.task, job.resolved_config, job.layout),
@@ -221,11 +222,11 @@ def plan_in_memory(job: Job, statuses: Sequence[PointStatus]) -> FilePlan:
 def result_file_plan(job: Job, solver: Solver, shard: Shard, kernels: str) -> FilePlan:
     """Plan of the result file that a run of the job creates or continues.
 
-    shard: part of the points that the run solves.
+    shard: part of the points that the run solves. kernels: names of the BLAS kernels that compute the points.
     """
     shard_text = str(shard) if shard.shard_count > 1 else ""
-    attributes = file_attributes(job, solver.statuses, kernels) | {"shard": shard_text}
-    return replace(plan_in_memory(job, solver.statuses), attributes=attributes)
+    attributes = file_attributes(job, solver.possible_statuses, kernels) | {"shard": shard_text}
+    return replace(plan_in_memory(job, solver.possible_statuses), attributes=attributes)
 
 
 def file_attributes(job: Job, statuses: Sequence[PointStatus], kernels: str) -> dict[str, Any]:
@@ -241,7 +242,7 @@ def file_attributes(job: Job, statuses: Sequence[PointStatus], kernels: str) -> 
         "petsc_options": petsc.user_options_text(),
         "shard": "",
         "status_sentences": "\n".join(f"{status.name}: {status.sentence}" for status in statuses),
-        provenance.KERNELS_ATTRIBUTE: kernels,
+        provenance.BLAS_KERNELS_ATTRIBUTE: kernels,
     }
     versions = {f"{name}_version": value for name, value in petsc.library_versions().items()}
     return attributes | job.config.parameters.constant_parameters | versions | provenance.provenance()

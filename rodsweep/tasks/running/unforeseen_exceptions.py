@@ -36,15 +36,15 @@ class FailureReasons:
     MAX_FAILURE_REASONS.
 
     point_text: function from the flat index of a point to a text with its parameters. example_by_reason: text
-    with parameters, status and message, by the reason with all numbers replaced.
+    with parameters, status and message, by reason; in a reason all numbers are replaced.
     """
 
     point_text: Callable[[int], str]
     example_by_reason: dict[str, str] = field(default_factory=dict)
 
     def add(self, index: PointIndexOrIndices, result: Any) -> list[str]:
-        """Adds the reason why a point failed; returns a list with this example, or an empty list if the
-        reason is known, the list of reasons is full, or no point failed.
+        """Adds the reason why a point failed; returns a list with the text on this point, or an empty list if
+        the reason is known, the list of reasons is full, or no point failed.
 
         index, result: flat index and outcome of one point, or flat indices, (n,), and result of a group, of
         which no point failed.
@@ -64,8 +64,9 @@ class FailureReasons:
 def changed_point_failure_reasons(
     result: SweepWideResult, statuses: Sequence[PointStatus], point_text: Callable[[int], str]
 ) -> list[str]:
-    """Distinct reasons why points that have changed since they were solved failed. point_text: function from
-    the flat index of a point to a text with its parameters."""
+    """Texts with parameters, status and message of failed points among the points that changed after they
+    were solved, one for each distinct reason. statuses: all statuses that a point can have. point_text:
+    function from the flat index of a point to a text with its parameters."""
     status_by_value = {int(status): status for status in statuses}
     reasons = FailureReasons(point_text)
     for index, values in result.changed_points.items():
@@ -122,8 +123,8 @@ class _GuardedSolver:
     def outcome(
         self, index: int, start: State, solve: Callable[[], tuple[Any, State]]
     ) -> tuple[StorableOutcome, State]:
-        """Returns (outcome, initial state for the next point) of a point. An unforeseen exception of the
-        solve or the record gives a failed outcome and no state."""
+        """Returns (outcome, initial state for the next point) of a point. An unforeseen exception, in the
+        solve or in the conversion into values of the file, gives a failed outcome and no state."""
         began = time.perf_counter()
         try:
             outcome, state = solve()
@@ -138,13 +139,15 @@ class _GuardedSolver:
 
     def _failed_outcome(self, error: Exception, seconds: float) -> StorableOutcome:
         """Outcome of a failed point, with the fill value of every variable."""
-        status = next(status for status in self.wrapped_solver.statuses if status.name == FAILED_STATUS)
+        status = next(
+            status for status in self.wrapped_solver.possible_statuses if status.name == FAILED_STATUS
+        )
         values = {SECONDS_VARIABLE.name: seconds, STATUS_VARIABLE.name: int(status)}
         return StorableOutcome(status, describe_exception(error), self.layout.fill_values_of_point | values)
 
     def solve_group(self, indices: NDArray[np.int64]) -> GroupResult:
         """Result of a group of points, at `indices`, (n,). After an unforeseen exception the result has fill
-        values, and states of every point that the point must be solved alone."""
+        values, and `is_solved` is False for every point, so that each point is solved alone."""
         assert self.wrapped_solver.groups_and_group_solver is not None
         try:
             return self.wrapped_solver.groups_and_group_solver[1](indices)
@@ -179,7 +182,9 @@ class TracebackLog:
     tracebacks."""
 
     def __init__(self, output: Path, rank: int, point_text: Callable[[int], str], is_strict: bool = False):
-        """output: the result file. is_strict: whether every exception is raised again after it is logged."""
+        """output: the result file. rank: number of this rank. point_text: function from the flat index of a
+        point to a text with its parameters. is_strict: whether every exception is raised again after it is
+        logged."""
         self.strict = is_strict
         self.path = traceback_log_path(output)
         self.rank = rank

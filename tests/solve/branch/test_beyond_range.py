@@ -59,9 +59,9 @@ def within_only(monkeypatch):
 
 def at_force(curve, force):
     """Period and largest tip y of a branch at a force, by interpolation between its cycles."""
-    order = np.argsort([point.parameter_value for point in curve.points])
+    order = np.argsort([point.parameter_value for point in curve.stored_cycles])
     at, period, y = np.array(
-        [(p.parameter_value, p.measures.period, p.measures.tip_y_max) for p in curve.points]
+        [(p.parameter_value, p.measures.period, p.measures.tip_y_max) for p in curve.stored_cycles]
     )[order].T
     return np.interp(force, at, period), np.interp(force, at, y)
 
@@ -81,7 +81,7 @@ def test_a_branch_that_turns_back_beyond_the_range_comes_back_stable():
     (wide, *_) = followed(RUBBER, 50.0, 137.56).curves
     fold = next(i for i, point in enumerate(wide.special_points) if point.kind == SpecialPointKind.fold)
     after = wide.special_points[fold].index_of_cycle_before + 1
-    upper = replace(wide, points=wide.points[after:])
+    upper = replace(wide, stored_cycles=wide.stored_cycles[after:])
     for force in (100.0, 120.0):
         assert at_force(back, force) == pytest.approx(at_force(upper, force), rel=3e-3)
     last, same = back.special_points[-1], wide.special_points[-1]
@@ -118,7 +118,7 @@ def test_a_branch_enters_the_range_from_a_fold_beyond_it_without_a_hopf_point():
     (wide,) = solve_branches(rod, replace(request, start=70.0), starts=[start]).curves
     (located,) = [point for point in wide.special_points if point.kind == SpecialPointKind.fold]
     assert located.parameter_value == pytest.approx(same.parameter_value, rel=2e-9)
-    assert crossing.branch_parameter == pytest.approx(same.parameter_value, rel=1e-7)
+    assert crossing.branch_parameter_value == pytest.approx(same.parameter_value, rel=1e-7)
 
 
 @pytest.mark.long
@@ -190,7 +190,7 @@ def test_cycles_without_symmetry_enter_the_range_from_a_symmetry_breaking_beyond
     assert kinds(lopsided) == ["end", "end"]
     assert lopsided.special_points[0].tip_y_max == pytest.approx(1.3554, abs=1e-4)
     assert lopsided.special_points[0].period == pytest.approx(0.103005, abs=1e-6)
-    measures = lopsided.points[0].measures
+    measures = lopsided.stored_cycles[0].measures
     assert abs(measures.tip_y_min) < 0.99 * measures.tip_y_max
     assert [interval.stability for interval in stability_intervals(lopsided)] == [1]
     assert found.followed_range[0] == 0.0
@@ -275,8 +275,8 @@ def test_branches_that_do_not_come_back_are_the_same_to_the_last_bit(within_only
             pytest.approx(200 * (1 - branches.BRANCH_SETTINGS.crushing_margin)),
         )
         with np.printoptions(floatmode="unique"):
-            assert [repr(curve.points) for curve in one.curves] == [
-                repr(curve.points) for curve in two.curves
+            assert [repr(curve.stored_cycles) for curve in one.curves] == [
+                repr(curve.stored_cycles) for curve in two.curves
             ]
         for mine, other in zip(one.curves, two.curves, strict=True):
             assert repr(mine.special_points) == repr(other.special_points)
@@ -360,7 +360,7 @@ def test_a_narrow_range_around_a_fold_holds_both_parts_of_the_branch():
     assert kinds(curve) == ["end", "fold", "end"]
     ends = [point.parameter_value for point in curve.special_points]
     np.testing.assert_allclose(ends, [85.6055, 85.6055767, 85.6055], rtol=1e-8)
-    first, last = (point.multiplier for point in (curve.points[0], curve.points[-1]))
+    first, last = (point.multiplier for point in (curve.stored_cycles[0], curve.stored_cycles[-1]))
     assert first < 1 < last
 
 

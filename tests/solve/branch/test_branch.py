@@ -69,8 +69,8 @@ def first_branch(rod, stop, accuracy=1e-7):
 
 def slopes(curve):
     """(p/y) dy/dp at the cycles of a branch, by differences to their neighbours."""
-    at = np.array([point.parameter_value for point in curve.points])
-    y = np.array([point.measures.tip_y_max for point in curve.points])
+    at = np.array([point.parameter_value for point in curve.stored_cycles])
+    y = np.array([point.measures.tip_y_max for point in curve.stored_cycles])
     return np.gradient(np.log(y)) / np.gradient(np.log(at))
 
 
@@ -86,14 +86,14 @@ def test_branch_from_the_first_hopf_point_of_fig_2c_arrives_at_its_restabilizati
     assert last.period == pytest.approx(2 * np.pi / 3367.28095760, rel=1e-11)
     assert 199.16 < fold.parameter_value < 199.1602
     assert fold.error < 1e-9 * fold.parameter_value
-    unstable = [point.unstable_count for point in curve.points]
+    unstable = [point.unstable_count for point in curve.stored_cycles]
     turn = fold.index_of_cycle_before + 1
     assert unstable == [0] * turn + [1] * (len(unstable) - turn)
-    assert all(point.parameter_value_error <= 1e-7 for point in curve.points)
+    assert all(point.parameter_value_error <= 1e-7 for point in curve.stored_cycles)
     steep = [abs(slope) > 100 for slope in slopes(curve)]
     assert all(
         point.errors.largest_weighted_error <= 1e-7
-        for point, is_steep in zip(curve.points, steep, strict=True)
+        for point, is_steep in zip(curve.stored_cycles, steep, strict=True)
         if not is_steep
     )
     assert 0 < sum(steep) < len(steep) / 2
@@ -125,8 +125,8 @@ def test_forward_and_backward_give_the_same_cycle():
     assert kinds(backward) == ["hopf", "fold", "end"]
     for curve in (forward, backward):
         assert curve.special_points[-1].end_reason == BranchEndReason.range_end
-        assert curve.points[-1].parameter_value == pytest.approx(100.0, rel=1e-14)
-    one, other = forward.points[-1], backward.points[-1]
+        assert curve.stored_cycles[-1].parameter_value == pytest.approx(100.0, rel=1e-14)
+    one, other = forward.stored_cycles[-1], backward.stored_cycles[-1]
     for name in ("period", "tip_y_max", "tip_x_min", "tip_x_max"):
         assert getattr(one.measures, name) == pytest.approx(getattr(other.measures, name), rel=1e-8)
     assert one.multiplier == pytest.approx(other.multiplier, abs=1e-6)
@@ -154,7 +154,7 @@ def test_first_cycles_have_the_amplitude_that_the_hopf_point_tells(along, rod, e
         else solve_branches(rod, BranchRequest(along, *ends, 1e-6, False, 200, 32))
     )
     for curve in found.curves:
-        hopf, first = curve.special_points[0], curve.points[0]
+        hopf, first = curve.special_points[0], curve.stored_cycles[0]
         a, away = hopf.amplitude_coefficient, first.parameter_value / hopf.parameter_value - 1
         assert np.sign(away) == np.sign(a)
         assert first.measures.tip_y_max == pytest.approx(abs(a) * abs(away) ** 0.5, rel=0.02)
@@ -171,8 +171,8 @@ def test_branch_without_a_fold():
     (curve,) = found.curves
     assert found.status == BranchStatus.ok
     assert kinds(curve) == ["hopf", "end"]
-    assert np.all(np.diff([point.parameter_value for point in curve.points]) > 0)
-    assert {point.unstable_count for point in curve.points} == {0}
+    assert np.all(np.diff([point.parameter_value for point in curve.stored_cycles]) > 0)
+    assert {point.unstable_count for point in curve.stored_cycles} == {0}
 
 
 @pytest.mark.long
@@ -182,7 +182,7 @@ def test_branch_that_leaves_the_model_ends_where_h1_is_0():
     end = curve.special_points[-1]
     assert end.kind == SpecialPointKind.left_the_model
     assert end.parameter_value == pytest.approx(99.14065359, abs=1e-6)
-    assert 0 < curve.points[-1].measures.least_stretch < 0.05
+    assert 0 < curve.stored_cycles[-1].measures.least_stretch < 0.05
     finer = solved(Rod(F=0.0, k1=100.0, k2=1e4, gamma3=0.1), 60.0, 120.0, 1e-9).curves[0].special_points[-1]
     assert abs(end.parameter_value - finer.parameter_value) <= end.error + finer.error
 
@@ -195,7 +195,7 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
     torus = only(curve, SpecialPointKind.torus)
     assert torus.error < 1e-9 * torus.parameter_value
     after = torus.index_of_cycle_before + 1
-    assert [point.unstable_count for point in curve.points[after - 1 : after + 1]] == [0, 2]
+    assert [point.unstable_count for point in curve.stored_cycles[after - 1 : after + 1]] == [0, 2]
     request = CycleRequest(1e-6, 0.01, 8, 0, 0, 0, 400, "hopf")
     for side, status in ((-1, CycleStatus.cycle), (1, CycleStatus.unstable)):
         F = torus.parameter_value * (1 + side * 2e-4)
@@ -212,11 +212,11 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
         -1.0,
     ).follow_from(torus, 100.0)
     assert end is CurveEndReason.edge
-    assert points[0].branch_parameter == pytest.approx(
+    assert points[0].branch_parameter_value == pytest.approx(
         torus.parameter_value, abs=points[0].branch_parameter_error + torus.error
     )
     for point in points:
-        assert point.branch_parameter_error <= 1e-7 * point.branch_parameter
+        assert point.branch_parameter_error <= 1e-7 * point.branch_parameter_value
         # By the eigenvalues of a matrix of its own, where the curve has the eigenvector of one near by.
         pair = multiplier_pair_nearest_unit_circle(
             BorderedMatrix(point.orbit, point.scale, NewtonWorkspace())
@@ -248,7 +248,7 @@ def test_branch_along_another_parameter_has_the_cycle_that_the_force_has(along, 
     )
     assert found.status == BranchStatus.ok
     curve = found.curves[0]
-    end, point = curve.special_points[-1], curve.points[-1]
+    end, point = curve.special_points[-1], curve.stored_cycles[-1]
     assert end.end_reason == BranchEndReason.range_end
     request = CycleRequest(1e-7, 0.01, 8, 0, 0, 0, 400, "hopf")
     cycle = solve_cycle(Rod(gamma1=1.0, **values | {along: end.parameter_value}), request)
@@ -280,15 +280,15 @@ def test_branch_that_cannot_be_followed_says_where_and_why(monkeypatch):
     assert first.special_points[-1].kind == SpecialPointKind.end
     assert first.special_points[-1].end_reason == BranchEndReason.no_cycle_found
     said = "the next cycle is not solved: there is no cycle near on the branch at F = "
-    assert f"branch 1: {said}{first.points[-1].parameter_value:.9g}; branch 2: {said}" in found.message
-    assert first.points[-1].parameter_value > 75
+    assert f"branch 1: {said}{first.stored_cycles[-1].parameter_value:.9g}; branch 2: {said}" in found.message
+    assert first.stored_cycles[-1].parameter_value > 75
     assert second.start_hopf_index == 1  # the other end is tried by itself
 
 
 def test_list_that_is_full_says_so():
     found = solved(SHORT, points=8)
     assert found.status == BranchStatus.list_full
-    assert sum(len(curve.points) for curve in found.curves) == 8
+    assert sum(len(curve.stored_cycles) for curve in found.curves) == 8
     assert found.curves[0].special_points[-1].end_reason == BranchEndReason.list_full
 
 
@@ -372,7 +372,7 @@ def test_branches_whose_cycles_have_multipliers_of_1e20_go_on_to_the_end_of_the_
     )
     assert curve.is_complete
     assert curve.special_points[-1].parameter_value == pytest.approx(stop)
-    assert max(point.multiplier for point in curve.points) > 1e20
+    assert max(point.multiplier for point in curve.stored_cycles) > 1e20
 
 
 def test_two_cycles_lie_behind_a_corner_before_the_end_of_the_range():
@@ -380,7 +380,7 @@ def test_two_cycles_lie_behind_a_corner_before_the_end_of_the_range():
     rod = Rod(F=0.0, k1=419.6, k2=23447.0, gamma3=0.1237, gamma1=0.645)
     request = BranchRequest("F", 0.0, 124.34, 3e-4, certify=False, cycles=100, special=10)
     (branch,) = solve_branches(rod, request, NewtonWorkspace()).curves
-    sizes = [point.measures.tip_y_max for point in branch.points[-4:]]
+    sizes = [point.measures.tip_y_max for point in branch.stored_cycles[-4:]]
     changes = np.diff(sizes)
     assert np.sign(changes).tolist() == [-1, 1, 1]
     # The middle step contains the corner, where a fall and a rise may cancel; the others are no errors.

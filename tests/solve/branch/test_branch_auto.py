@@ -18,7 +18,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc_length_step import cycle_at_length, next_cycle
 from rodsweep.solve.branch.branch_mesh_choice import is_error_measurement_due, solve_on_sufficient_mesh
 from rodsweep.solve.branch.range_end import cycle_at_range_end, range_end_condition
-from rodsweep.solve.branch.special.detection import special_points_between
+from rodsweep.solve.branch.special.detection import special_points_and_completeness
 from rodsweep.solve.branch.special.special_point import SpecialPointKind
 from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
@@ -76,7 +76,7 @@ def branch_of_this(rod, kind, F):
     )
     while True:
         there = next_cycle(here, ACCURACY)
-        for point in special_points_between(
+        for point in special_points_and_completeness(
             here, there, partial(cycle_at_length, accuracy=ACCURACY), ACCURACY
         )[0]:
             if point.kind == kind:

@@ -37,7 +37,7 @@ def test_branch_ends_before_a_fold_beyond_the_range(fold, share):
     assert [one.kind.name for one in first.special_points] == ["hopf", "end"]
     assert first.special_points[-1].end_reason == BranchEndReason.range_end
     assert first.special_points[-1].parameter_value == pytest.approx(stop, rel=1e-9)
-    assert max(point.parameter_value for point in first.points) <= stop * (1 + 1e-9)
+    assert max(point.parameter_value for point in first.stored_cycles) <= stop * (1 + 1e-9)
 
 
 def test_branch_passes_a_fold_within_the_range(fold):
@@ -128,7 +128,7 @@ def test_a_branch_passes_the_drag_below_which_omega_is_an_unknown():
     assert whole.status == BranchStatus.ok
     (curve,) = whole.curves
     assert curve.special_points[-1].end_reason == BranchEndReason.range_end
-    assert min(point.parameter_value for point in curve.points) == pytest.approx(0.25, rel=1e-9)
+    assert min(point.parameter_value for point in curve.stored_cycles) == pytest.approx(0.25, rel=1e-9)
 
 
 def test_a_branch_along_the_taper_ends_where_the_force_crushes_the_tip():
@@ -172,7 +172,7 @@ def test_a_branch_along_a_stiffness_ends_almost_at_infinity(stop):
         (curve,) = found.curves
         ends.append(curve.special_points[-1])
         assert ends[-1].end_reason == BranchEndReason.range_end
-        assert curve.points[-1].parameter_value == pytest.approx(end, rel=1e-12)
+        assert curve.stored_cycles[-1].parameter_value == pytest.approx(end, rel=1e-12)
     # Linear in 1/k1: from 1e5 to infinity y changes by 1e-3, so that squares are 1e-6.
     y = [end.tip_y_max for end in ends]
     assert y[2] == pytest.approx(2 * y[1] - y[0], rel=1e-5)
@@ -197,7 +197,7 @@ def test_a_branch_along_the_rotational_drag_ends_at_zero():
         assert found.status == BranchStatus.ok
         (curve,) = found.curves
         assert curve.special_points[-1].end_reason == BranchEndReason.range_end
-        assert curve.points[-1].parameter_value == 0.0
+        assert curve.stored_cycles[-1].parameter_value == 0.0
         ends.append(curve.special_points[-1])
     rough, fine = ends
     assert abs(rough.period - fine.period) <= rough.period_error + fine.period_error < 1e-4
@@ -214,7 +214,7 @@ def test_a_range_that_stops_before_the_first_cycle_ends_with_the_cycle_there(dis
     (curve,) = found.curves
     beyond = solve_branches(rod, BranchRequest("F", value, 40.0, 1e-9, True, 100, 10))
     end, exact = curve.special_points[-1], beyond.curves[0].special_points[0]
-    assert found.status == BranchStatus.ok and not curve.points
+    assert found.status == BranchStatus.ok and not curve.stored_cycles
     assert (end.kind, end.end_reason) == (SpecialPointKind.end, BranchEndReason.range_end)
     assert end.parameter_value == pytest.approx(value, rel=1e-13)
     period_error = end.period_error + exact.period_error
@@ -228,7 +228,7 @@ def test_a_branch_without_symmetry_ends_at_the_end_of_the_range_before_its_first
     rod = Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1)
     start = 19.9027  # the symmetry breaks at 19.902805
     curves = solve_branches(rod, BranchRequest("F", start, 19.91, 1e-5, False, 500, 50)).curves
-    (curve,) = (one for one in curves if one.start_breaking is not None and not one.points)
+    (curve,) = (one for one in curves if one.start_breaking is not None and not one.stored_cycles)
     breaking, end = curve.special_points
     assert end.parameter_value == pytest.approx(start, rel=1e-13)
     assert end.period == breaking.period and 1e-6 < end.period_error < 1e-2

@@ -88,11 +88,11 @@ def test_a_tiny_branch_between_two_coalescing_hopf_points_is_an_ellipse():
     curve = follow_branch_from_hopf_point(0, limits)
     assert [point.kind.name for point in curve.special_points] == ["hopf", "hopf"]
     assert (curve.start_hopf_index, curve.end_hopf_index) == (0, 1)
-    F = np.array([point.parameter_value for point in curve.points])
-    y = np.array([point.measures.tip_y_max for point in curve.points])
+    F = np.array([point.parameter_value for point in curve.stored_cycles])
+    y = np.array([point.measures.tip_y_max for point in curve.stored_cycles])
     p1, p2 = first.parameter_coordinate, second.parameter_coordinate
     ratios = [
-        abs(hopf.eigenvalue_slope.real / hopf.normal_form_coefficients.landau.real)
+        abs(hopf.eigenvalue_slope_by_coordinate.real / hopf.normal_form_coefficients.landau.real)
         for hopf in (first, second)
     ]
     ellipse = np.interp(F, [p1, p2], ratios) * (F - p1) * (p2 - F) / (p2 - p1)
@@ -125,7 +125,7 @@ def test_cycles_of_low_accuracy_are_not_the_symmetric_cycles_nearby(accuracy):
     assert [point.kind.name for point in curve.special_points] == ["symmetry_breaking", "fold", "end"]
     fold = curve.special_points[1]
     assert abs(fold.parameter_value - 7.9124780687) <= fold.error + 1e-9 < 1e-6
-    assert all(abs(p.measures.tip_y_max / p.measures.tip_y_min + 1) > 1e-2 for p in curve.points)
+    assert all(abs(p.measures.tip_y_max / p.measures.tip_y_min + 1) > 1e-2 for p in curve.stored_cycles)
 
 
 @pytest.mark.long

@@ -105,11 +105,11 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
     assert end.parameter_value == pytest.approx(STOP, rel=1e-14)
     assert end.end_reason == BranchEndReason.range_end
     turn = symmetric.special_points[1].index_of_cycle_before + 1
-    assert {point.unstable_count for point in symmetric.points[:turn]} - {-1} == {0}
-    assert {point.unstable_count for point in symmetric.points[turn:]} - {-1} == {1}
+    assert {point.unstable_count for point in symmetric.stored_cycles[:turn]} - {-1} == {0}
+    assert {point.unstable_count for point in symmetric.stored_cycles[turn:]} - {-1} == {1}
     turn = fold.index_of_cycle_before + 1
-    assert {point.unstable_count for point in asymmetric.points[:turn]} - {-1} == {1}
-    assert {point.unstable_count for point in asymmetric.points[turn:]} - {-1} == {0}
+    assert {point.unstable_count for point in asymmetric.stored_cycles[:turn]} - {-1} == {1}
+    assert {point.unstable_count for point in asymmetric.stored_cycles[turn:]} - {-1} == {0}
 
 
 def test_symmetry_breaks_for_a_stretchable_rod_that_is_almost_crushed():
@@ -126,11 +126,11 @@ def test_symmetry_breaks_for_a_stretchable_rod_that_is_almost_crushed():
 @pytest.mark.long
 def test_asymmetry_grows_with_the_square_root_of_the_distance(symmetric, asymmetric):
     """So do largest and smallest y; symmetric cycles have none."""
-    assert all(point.measures.tip_y_min == -point.measures.tip_y_max for point in symmetric.points)
+    assert all(point.measures.tip_y_min == -point.measures.tip_y_max for point in symmetric.stored_cycles)
     born = asymmetric.special_points[0]
     (near, F), (far, beyond) = (
         ((point.measures.tip_y_max + point.measures.tip_y_min) ** 2, point.parameter_value)
-        for point in asymmetric.points[:2]
+        for point in asymmetric.stored_cycles[:2]
     )
     # Without the square the two would lead 5e-4 beside it.
     assert (F + (F - beyond) * near / (far - near)) / born.parameter_value == pytest.approx(1, abs=2e-4)

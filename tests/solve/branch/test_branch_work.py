@@ -8,7 +8,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.branch_errors import BranchErrorCalibration
 from rodsweep.solve.branch.branch_limits import MULTIPLICATIONS_PER_WORK_UNIT, BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
-from rodsweep.solve.branch.multiplier_sensitivity import MultiplierSensitivity
+from rodsweep.solve.branch.multiplier_sensitivity import MultiplierErrorAmplification
 from rodsweep.solve.branch.special import locating
 from rodsweep.solve.branch.special.augmented.fold_and_torus_test_functions import correct_until_converged
 from rodsweep.solve.branch.special.special_point import SpecialPointKind
@@ -35,10 +35,10 @@ def test_branch_ends_where_its_work_is_used_up():
     (curve,) = part.curves
     assert curve.special_points[-1].end_reason == BranchEndReason.list_full
     assert "`work`" in part.message
-    known = [point.parameter_value for point in whole.curves[0].points]
-    assert 1 <= len(curve.points) < len(known)
-    assert [point.parameter_value for point in curve.points] == pytest.approx(
-        known[: len(curve.points)], rel=1e-5
+    known = [point.parameter_value for point in whole.curves[0].stored_cycles]
+    assert 1 <= len(curve.stored_cycles) < len(known)
+    assert [point.parameter_value for point in curve.stored_cycles] == pytest.approx(
+        known[: len(curve.stored_cycles)], rel=1e-5
     )
 
 
@@ -46,12 +46,12 @@ def test_rod_after_a_limited_rod_has_its_own_work():
     workspace = NewtonWorkspace()
     request = BranchRequest("F", 0.0, 60.0, 1e-5, False, 500, 50, 0.2)
     first, second = (solve_branches(ROD, request, workspace) for _ in range(2))
-    assert len(first.curves[0].points) == len(second.curves[0].points) > 0
+    assert len(first.curves[0].stored_cycles) == len(second.curves[0].stored_cycles) > 0
 
 
 def test_branch_without_work_for_its_first_cycle_says_so():
     (curve,) = branches_of(ROD, 60.0, work=1e-6).curves
-    assert not curve.points
+    assert not curve.stored_cycles
     assert curve.special_points[-1].end_reason == BranchEndReason.list_full
 
 
@@ -94,11 +94,11 @@ def test_further_stages_replace_time_intervals_on_the_first_mesh_of_a_special_po
         np.array([1e-4, 1e-4, 1.0]),
         0.0,
     )
-    branch = BranchErrorCalibration(known, np.full(2, 1e-8), 1.0, 1.0, MultiplierSensitivity(1.0, 1.0))
+    branch = BranchErrorCalibration(known, np.full(2, 1e-8), 1.0, 1.0, MultiplierErrorAmplification(1.0, 1.0))
     mesh = first_mesh_for_special_point(branch, 1e-9)
     assert mesh.stage_count == 5
     assert mesh.interval_count < 2 * known.mesh.interval_count
-    assert branch.cheapest_mesh_for_parameter(2e-10).interval_count > 2 * known.mesh.interval_count
+    assert branch.cheapest_mesh_at_equal_deflection(2e-10).interval_count > 2 * known.mesh.interval_count
 
 
 def test_unit_of_work_is_the_documented_number_of_multiplications():

@@ -16,11 +16,11 @@ from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
 from rodsweep.post.summary.phase_diagram import phase_diagram_summary
-from rodsweep.post.summary.selection import Selection
+from rodsweep.post.summary.selection import PointSelection
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.phase_diagram import CYCLE_CURVE_END_REASONS
 from rodsweep.solve.branch import coexistence
-from rodsweep.solve.branch.bordered.condition import BorderCondition
+from rodsweep.solve.branch.bordered.border_condition import BorderCondition
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.bordered.scale import ArcLengthScale
 from rodsweep.solve.branch.coexistence import StableStates, solve_coexistence
@@ -115,7 +115,9 @@ def test_states_that_multipliers_on_the_circle_leave_undecided_have_a_status(mon
     def on_the_circle(rod, asked, workspace, starts):
         branches = real(rod, asked, workspace)
         (curve,) = branches.curves
-        curve.points[:] = [replace(point, unstable_count=-1, multiplier=1.0) for point in curve.points]
+        curve.stored_cycles[:] = [
+            replace(point, unstable_count=-1, multiplier=1.0) for point in curve.stored_cycles
+        ]
         return branches
 
     monkeypatch.setattr(coexistence, "solve_branches", on_the_circle)
@@ -395,5 +397,5 @@ def test_a_run_killed_on_a_branch_from_beyond_resumes_to_the_same_file(beyond):
 def test_where_no_stable_state_is_known_is_listed(beyond):
     view = read_view(beyond.directory / "beyond.h5")
     view.variables["stable_states"][..., 1] = StableStates.neither_known
-    told = phase_diagram_summary(Selection(view, view.variables["status"] >= 0)).answer
+    told = phase_diagram_summary(PointSelection(view, view.variables["status"] >= 0)).answer
     assert "no stable state known: at grid points of 2 of 2 rows, F = 110, k1 = 322.11 to 322.2" in told

@@ -8,7 +8,7 @@ import pytest
 from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc_length_step import next_cycle
-from rodsweep.solve.branch.bordered.condition import moved_orbit
+from rodsweep.solve.branch.bordered.border_condition import moved_orbit
 from rodsweep.solve.branch.bordered.corrected_linearisation import corrected_linearisation
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.branch_limits import BranchRequest
@@ -96,5 +96,5 @@ def test_branch_takes_about_two_matrices_for_a_cycle():
     rod = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
     branches = solve_branches(rod, BranchRequest("F", 1.0, 60.0, ACCURACY, True, 100, 10), workspace)
     assert branches.status == BranchStatus.ok
-    cycles = sum(len(curve.points) for curve in branches.curves)
+    cycles = sum(len(curve.stored_cycles) for curve in branches.curves)
     assert workspace.matrices <= 2.2 * cycles

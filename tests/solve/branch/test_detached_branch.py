@@ -114,7 +114,9 @@ def test_cycles_of_a_closed_branch_are_stable_on_one_side_of_both_folds(closed):
     assert existence_of_stable_cycle(values, closed, certify=True).tolist() == [0, 1, 1, 1, 0]
     (curve,) = closed.curves
     counts = {
-        point.unstable_count for point in curve.points if FIRST + 0.1 < point.parameter_value < LAST - 0.1
+        point.unstable_count
+        for point in curve.stored_cycles
+        if FIRST + 0.1 < point.parameter_value < LAST - 0.1
     }
     assert counts == {0, 1}
 
@@ -134,8 +136,8 @@ def test_a_branch_that_leaves_the_range_has_both_ends_there(starts):
     first, fold, last = curve.special_points
     assert {first.end_reason, last.end_reason} == {BranchEndReason.range_end}
     assert fold.parameter_value == pytest.approx(FIRST, abs=1e-8)
-    assert [curve.points[i].unstable_count for i in (0, -1)] == [1, 0]
-    assert [curve.points[i].parameter_value for i in (0, -1)] == pytest.approx([79, 79], rel=1e-13)
+    assert [curve.stored_cycles[i].unstable_count for i in (0, -1)] == [1, 0]
+    assert [curve.stored_cycles[i].parameter_value for i in (0, -1)] == pytest.approx([79, 79], rel=1e-13)
     # The same cycles at the ends of branches along k1: one comes from a Hopf point of another rod, the other
     # enters the range from smaller k1.
     along = rs.sweep(

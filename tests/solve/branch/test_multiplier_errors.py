@@ -8,7 +8,7 @@ from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.branch_continuation import follow_branch_from_hopf_point
 from rodsweep.solve.branch.branch_limits import BranchLimits
-from rodsweep.solve.branch.multiplier_sensitivity import MultiplierSensitivity
+from rodsweep.solve.branch.multiplier_sensitivity import MultiplierErrorAmplification
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchEndReason
 from rodsweep.solve.changes.thresholds_along_path import find_imaginary_axis_crossings
@@ -53,9 +53,9 @@ def followed_down(rod, end, top, accuracy):
     ],
 )
 def test_interpolated_errors_of_large_multipliers_cover_the_errors(rod, top, end, place):
-    points = followed_down(rod, end, top, 1e-4).points
+    points = followed_down(rod, end, top, 1e-4).stored_cycles
     rough = min(points, key=lambda point: abs(point.parameter_value - place))
-    fine = followed_down(rod, rough.parameter_value, top, 1e-7).points[-1]
+    fine = followed_down(rod, rough.parameter_value, top, 1e-7).stored_cycles[-1]
     assert fine.parameter_value == pytest.approx(rough.parameter_value, rel=1e-12)
     error = abs(rough.multiplier - fine.multiplier)
     assert error <= rough.errors.multiplier_error + fine.errors.multiplier_error
@@ -68,11 +68,11 @@ def test_errors_of_nearly_coincident_multipliers_are_those_of_a_quadratic_polyno
     """h^2 - s h + p = 0 with the discriminant d (a complex pair for d < 0), whose error is the same
     everywhere: the error of the root follows from the error at another discriminant."""
     quotient = 1e-4
-    measured = MultiplierSensitivity(1.0, 1.0)
+    measured = MultiplierErrorAmplification(1.0, 1.0)
     assert measured.error_from_quotient(quotient) == quotient
     limit = 0.3
     amplification = max(limit / max(abs(distance), 1e-300), 1.0)
-    stated = MultiplierSensitivity(50.0, amplification).error_from_quotient(quotient) / 50.0
+    stated = MultiplierErrorAmplification(50.0, amplification).error_from_quotient(quotient) / 50.0
     # Roots at the relative distance d are (1 + d)/2 +- d/2; an error e at d = 0.3 is 0.3 e of d^2/2.
     squared = np.sign(distance) * distance**2
     moved = [np.emath.sqrt(squared + sign * 2 * limit * quotient) for sign in (-1, 1)]
@@ -83,7 +83,7 @@ def test_errors_of_nearly_coincident_multipliers_are_those_of_a_quadratic_polyno
 
 def test_a_multiplier_that_differs_by_powers_of_ten_between_meshes_is_extrapolated_by_its_logarithm():
     """Multipliers of 1e36, 1e51 and 1e54 on a mesh, on a finer one and exactly (a cone of taper 0.6)."""
-    cycle = MultiplierSensitivity(1e36, 1.0)
+    cycle = MultiplierErrorAmplification(1e36, 1.0)
     stated = MESH_ERROR_CALIBRATION_SETTINGS.error_safety_factor * cycle.error_from_mesh_difference(1e51, 0.8)
     assert 1e54 < stated < np.inf
     assert cycle.error_from_mesh_difference(1e33, 0.8) == 1e33 / 0.8

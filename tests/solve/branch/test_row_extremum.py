@@ -67,13 +67,17 @@ def points(fold):
 @pytest.mark.long
 def test_a_curve_of_folds_passes_the_smallest_closed_branch(points):
     (extremum,) = extrema_of(points)
-    assert extremum.row_parameter == min(point.row_parameter for point in points)
-    assert extremum.branch_parameter == pytest.approx(SMALLEST[0], abs=extremum.branch_parameter_error + 1e-7)
-    assert extremum.row_parameter == pytest.approx(SMALLEST[1], abs=extremum.row_parameter_error_at_extremum)
+    assert extremum.row_parameter_value == min(point.row_parameter_value for point in points)
+    assert extremum.branch_parameter_value == pytest.approx(
+        SMALLEST[0], abs=extremum.branch_parameter_error + 1e-7
+    )
+    assert extremum.row_parameter_value == pytest.approx(
+        SMALLEST[1], abs=extremum.row_parameter_error_at_extremum
+    )
     assert extremum.branch_parameter_error <= 1e-7 * SMALLEST[0]
     assert extremum.row_parameter_error_at_extremum <= 1e-8 * SMALLEST[1]
     # The curve is regular there: its points lie on both sides, in order.
-    forces = [point.branch_parameter for point in points]
+    forces = [point.branch_parameter_value for point in points]
     assert forces == sorted(forces, reverse=True)
     assert forces[0] > 90 > SMALLEST[0] > 75 > forces[-1]
     assert all(point.scale.parameter_name == "F" for point in points)
@@ -94,31 +98,33 @@ def test_the_extremum_is_that_of_folds_along_the_row_parameter():
 
 @pytest.mark.long
 def test_folds_near_the_extremum_are_those_of_branches_along_the_row(points):
-    near = [point for point in points if 133.015 < point.row_parameter < 133.1]
-    assert {point.branch_parameter > SMALLEST[0] for point in near} == {True, False}
+    near = [point for point in points if 133.015 < point.row_parameter_value < 133.1]
+    assert {point.branch_parameter_value > SMALLEST[0] for point in near} == {True, False}
     assert len(near) > 5
     for point in near:
         crossing = RowCrossing.from_solved_point(
             0, SpecialPointKind.fold, point, point.branch_parameter_error
         )
-        folds = folds_of(replace(ROD, k1=point.row_parameter), [crossing.special_point])
-        distance = min(abs(fold.parameter_value - point.branch_parameter) for fold in folds)
-        assert distance <= min(point.branch_parameter_error, 1e-7 * point.branch_parameter)
+        folds = folds_of(replace(ROD, k1=point.row_parameter_value), [crossing.special_point])
+        distance = min(abs(fold.parameter_value - point.branch_parameter_value) for fold in folds)
+        assert distance <= min(point.branch_parameter_error, 1e-7 * point.branch_parameter_value)
 
 
 @pytest.mark.long
 def test_a_curve_begins_near_an_extremum_in_both_directions(points):
     extremum = extrema_of(points)[0]
-    row = extremum.row_parameter + 6e-4
+    row = extremum.row_parameter_value + 6e-4
     problem = SpecialCurveProblem(SpecialPointKind.fold, *AXES, NewtonWorkspace(), 1.0)
     beyond = next(
-        p for p in points if p.branch_parameter < extremum.branch_parameter and p.row_parameter > row
+        p
+        for p in points
+        if p.branch_parameter_value < extremum.branch_parameter_value and p.row_parameter_value > row
     )
     before = points[points.index(beyond) - 1]
     crossing = problem.point_on_row(before, beyond, AXES[1].scaled_coordinate(row))
     start = RowCrossing.from_solved_point(0, SpecialPointKind.fold, crossing, 1e-4).special_point
     low, high = sorted(folds_of(replace(ROD, k1=row), [start]), key=lambda fold: fold.parameter_value)
-    assert low.parameter_value == pytest.approx(crossing.branch_parameter, abs=1e-4)
+    assert low.parameter_value == pytest.approx(crossing.branch_parameter_value, abs=1e-4)
     for axes in (
         AXES,
         (AXES[0], PlaneAxis("k1", 136.0, 132.0)),
@@ -129,7 +135,7 @@ def test_a_curve_begins_near_an_extremum_in_both_directions(points):
                 # `direction` belongs to the row coordinate, which may decrease with k1.
                 rises = np.sign(axes[1].stop - axes[1].start)
                 curve, _ = followed(special, row, direction * rises, axes)
-                at = [round(point.branch_parameter, 5) for point in extrema_of(curve)]
+                at = [round(point.branch_parameter_value, 5) for point in extrema_of(curve)]
                 assert (79.00407 in at) == (direction == leads_over)
                 assert (118.45785 in at) == ((special is low) == (direction == leads_over))
 
@@ -140,7 +146,7 @@ def test_a_tiny_closed_branch_is_followed(points, distance):
     """Its extent grows with the square root of the distance of its row from the smallest one, which a mesh
     displaces by more than this distance."""
     index = points.index(extrema_of(points)[0])
-    row = points[index].row_parameter + distance
+    row = points[index].row_parameter_value + distance
     problem = SpecialCurveProblem(SpecialPointKind.fold, *AXES, NewtonWorkspace(), 1.0)
     ends = points[index - 1 : index + 1], points[index : index + 2]
     crossings = [problem.point_on_row(*pair, AXES[1].scaled_coordinate(row)) for pair in ends]
@@ -175,7 +181,7 @@ def test_no_step_leads_from_one_branch_to_another_that_nearly_touches_it(row, ki
     if heights:
         ends = [curve.special_points[-1].tip_y_max for curve in found.curves]
         assert ends == pytest.approx(heights, abs=1e-4)
-        assert [curve.points[-1].unstable_count for curve in found.curves] == [0, 1]
+        assert [curve.stored_cycles[-1].unstable_count for curve in found.curves] == [0, 1]
         return
     (fold,) = [point for point in special_points_of(found) if point.kind == SpecialPointKind.fold]
     # The same fold on the branch along k1.
@@ -228,21 +234,27 @@ def test_an_extremum_that_is_not_located_is_left_out(fold, points, monkeypatch):
     assert end is CurveEndReason.hopf
     extremum = extrema_of(points)[0]
     kept = [point for point in points if point is not extremum]
-    assert [point.branch_parameter for point in others] == [point.branch_parameter for point in kept]
+    assert [point.branch_parameter_value for point in others] == [
+        point.branch_parameter_value for point in kept
+    ]
     (marked,) = [i for i, point in enumerate(others) if np.isnan(point.row_parameter_error_at_extremum)]
-    assert others[marked - 1].branch_parameter > extremum.branch_parameter > others[marked].branch_parameter
+    assert (
+        others[marked - 1].branch_parameter_value
+        > extremum.branch_parameter_value
+        > others[marked].branch_parameter_value
+    )
 
 
 @pytest.mark.long
 def test_without_the_exchange_of_roles_the_curve_is_lost(fold, monkeypatch):
     """What the exchange is for; from k1 = 134 on, with the steps of this curve."""
     start = folds_of(replace(ROD, k1=134.0))[0]
-    settings = replace(parameter_roles.PARAMETER_ROLE_SETTINGS, max_slope_to_exchange_roles=0.0)
+    settings = replace(parameter_roles.PARAMETER_ROLE_SETTINGS, max_row_parameter_slope_to_exchange=0.0)
     monkeypatch.setattr(parameter_roles, "PARAMETER_ROLE_SETTINGS", settings)
     monkeypatch.setattr(ParameterRoles, "need_exchange_beyond", lambda *_: False)
     points, end = followed(start, 134.0, -1.0)
     assert end is CurveEndReason.not_followed
-    assert points[-1].row_parameter == pytest.approx(133.0146, abs=1e-4)
+    assert points[-1].row_parameter_value == pytest.approx(133.0146, abs=1e-4)
 
 
 def test_curves_of_torus_points_never_exchange_the_roles():

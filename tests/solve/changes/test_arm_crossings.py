@@ -149,7 +149,7 @@ def search_result(*errors, **others):
     ("others", "max_thresholds", "status"),
     [
         ({"ended_early": True}, 4, ThresholdStatus.ended_early),
-        ({"open_range": (7.0, 8.0)}, 4, ThresholdStatus.window_open),
+        ({"range_of_further_crossings": (7.0, 8.0)}, 4, ThresholdStatus.window_open),
         ({}, 2, ThresholdStatus.list_full),
     ],
 )

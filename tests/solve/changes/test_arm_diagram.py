@@ -28,7 +28,8 @@ def traced(material, kind, axes=FORCE_AND_STIFFNESS, **values):
     """The curve from the first change of a kind on the middle row of a plane."""
     first, second = axes
     middle = Rod(
-        **{"F": 0.0, "k1": 300.0, **ROD, **values, second.name: second.value(0.5)}, material=material
+        **{"F": 0.0, "k1": 300.0, **ROD, **values, second.parameter_name: second.value(0.5)},
+        material=material,
     )
     found = find_thresholds(ParameterPath(middle, "F"), 0.0, min(first.stop, 0.999 * middle.crushing_force))
     change = next(c for c in found.thresholds if c.kind == kind)
@@ -165,7 +166,7 @@ def test_a_generalised_hopf_point_of_a_uniform_arm_is_that_of_the_closed_form():
         start = tuple(axis.scaled_coordinate(value) for axis, value in zip(plane_axes, fold[:2], strict=True))
         told = curve_criticality(plane, trace_boundary(0.0, plane, start, fold[2]), 1e-10)
         assert told.unlocated_sign_change_count == 0
-        points.append(told.points[0])
+        points.append(told.bautin_points[0])
     exact, found = points
     for value, theirs, error in zip(
         exact.parameter_values, found.parameter_values, found.parameter_errors, strict=True

@@ -162,7 +162,7 @@ def test_a_crossing_beyond_the_end_of_a_search_is_found_again_but_once():
     intervals, seen = IntervalQueue([0.0, 1.0, 2.0, 3.0]), []
     for a, b in intervals:
         if b > 1.7:
-            intervals.retry_left_half_only((a, b), "no")
+            intervals.limit_search_to_left_half((a, b), "no")
         else:
             seen.append((a, b))
     assert seen == [(0.0, 1.0), (1.0, 1.5), (1.5, 1.625), (1.625, 1.6875)]
@@ -184,13 +184,13 @@ def test_a_full_list_ends_the_search_and_holds_the_same_changes():
 
 def test_each_load_of_a_search_is_counted_once(monkeypatch):
     """The places of a search, the samples of the leading eigenvalue and the confirmation share counts."""
-    counted, whole = [], followed_arms.confirmed_count_at
+    counted, whole = [], followed_arms.confirmed_mode_count_at
 
     def count(path, hulls, p, modes, here):
         counted.append(p)
         return whole(path, hulls, p, modes, here)
 
-    monkeypatch.setattr(followed_arms, "confirmed_count_at", count)
+    monkeypatch.setattr(followed_arms, "confirmed_mode_count_at", count)
     rod = STEPPED.with_values(k2=100.0)
     found = solve_thresholds(rod, ThresholdsRequest(80.0, 1e-8, True, 16))
     assert found.status == ThresholdStatus.ok

@@ -33,8 +33,8 @@ def rows(plane_axes, rod, count):
     found, seeds = [], []
     for y in np.linspace(0, 1, count):
         value = across.value(float(y))
-        request = RowRequest(along.name, np.linspace(along.start, along.stop, 41), 1e-9, True, 50)
-        row = solve_row(replace(rod, **{across.name: value}), request)
+        request = RowRequest(along.parameter_name, np.linspace(along.start, along.stop, 41), 1e-9, True, 50)
+        row = solve_row(replace(rod, **{across.parameter_name: value}), request)
         assert row.status == ThresholdStatus.ok, row.message
         found.append(row)
         seeds += [
@@ -183,9 +183,9 @@ def test_the_tangent_of_a_boundary_touches_it(axes, rod):
         start = boundary.point_near(
             np.array([*scaled, log(abs(seed.frequency_or_double_eigenvalue))]), np.array([0.0, 1.0, 0.0])
         )
-        assert boundary.eigenvalue(start.v[2])[int(seed.double_eigenvalue_sign == 0)] == pytest.approx(
-            seed.frequency_or_double_eigenvalue, rel=1e-6
-        )
+        assert boundary.growth_rate_and_frequency(start.v[2])[
+            int(seed.double_eigenvalue_sign == 0)
+        ] == pytest.approx(seed.frequency_or_double_eigenvalue, rel=1e-6)
         tangent = start.tangent
         if (scaled[1] < 0.5) != (tangent[1] > 0):
             tangent = -tangent  # into the plane

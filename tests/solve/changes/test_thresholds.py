@@ -148,8 +148,15 @@ def test_before_the_fold_there_is_no_window():
 def test_a_window_that_rounding_cannot_decide_is_reported_open(beyond):
     found = thresholds(FOLD + beyond, 1e4, 1e-4)
     assert found.status == ThresholdStatus.window_open
-    assert found.search_result.open_range[0] < 75.3972626336 < found.search_result.open_range[1]
-    assert found.search_result.open_range[1] - found.search_result.open_range[0] < 1e-3
+    assert (
+        found.search_result.range_of_further_crossings[0]
+        < 75.3972626336
+        < found.search_result.range_of_further_crossings[1]
+    )
+    assert (
+        found.search_result.range_of_further_crossings[1] - found.search_result.range_of_further_crossings[0]
+        < 1e-3
+    )
     assert not found.search_result.is_proved
     assert found.search_result.unstable_at_end == 0
 
@@ -199,13 +206,13 @@ def test_a_change_along_any_parameter_is_a_change_along_the_force(name, fixed, s
 
 
 def test_a_lost_crossing_is_noticed_by_the_counts(monkeypatch):
-    whole = transitions_module.cover_with_boxes
+    whole = transitions_module.zeros_and_open_boxes_of_covering
 
     def loses_one(*arguments):
         zeros, left, examined = whole(*arguments)
         return sorted(zeros, key=lambda z: z[1])[1:], left, examined
 
-    monkeypatch.setattr(transitions_module, "cover_with_boxes", loses_one)
+    monkeypatch.setattr(transitions_module, "zeros_and_open_boxes_of_covering", loses_one)
     found = thresholds(1e4, 1e4, 1e-4)
     assert found.status == ThresholdStatus.not_certified
     assert "modes are unstable between" in found.message
@@ -230,7 +237,7 @@ def test_what_overflows_fails_with_a_reason():
     found = thresholds(1e300, 1e-300, 1e300)
     assert found.status == ThresholdStatus.failed
     assert found.message
-    assert isnan(found.search_result.open_range[0])
+    assert isnan(found.search_result.range_of_further_crossings[0])
 
 
 def test_a_search_up_to_a_force_without_a_bound_names_the_force():
@@ -330,7 +337,7 @@ def test_strong_pulls_cost_no_more_than_pushes(k1):
     """Both exponentials of D grow there and cancel; bounded apart they would take a million boxes."""
     path = ParameterPath(Rod(F=0.0, k1=k1, k2=1e4, gamma3=1e-4), "F")
     for start in (-400.0, -100.0):
-        zeros, left, examined = transitions_module.cover_with_boxes(
+        zeros, left, examined = transitions_module.zeros_and_open_boxes_of_covering(
             transitions_module.first_crossing_boxes(path, start, 0.0), path.origin, path.direction
         )
         assert (zeros, left) == ([], [])

@@ -23,7 +23,7 @@ STEPS = StepControl(
     min_length=1e-6,
     target_angle=0.1,
     max_angle=0.3,
-    max_length_ratio=2.0,
+    max_successive_length_ratio=2.0,
     max_solutions=500,
 )
 
@@ -141,7 +141,7 @@ def test_a_curve_has_no_more_solutions_than_are_kept():
             max_length=0.01,
             min_length=1e-6,
             max_angle=0.3,
-            max_length_ratio=2.0,
+            max_successive_length_ratio=2.0,
             max_solutions=7,
         ),
     )
@@ -159,7 +159,7 @@ def test_steps_are_as_long_as_turns_and_predictions_allow():
         target_prediction_error=5e-3,
         prediction_order=2,
         max_angle=1.0,
-        max_length_ratio=2.0,
+        max_successive_length_ratio=2.0,
         max_solutions=500,
     )
     by_distance = np.diff(followed(Ellipse(1.0, 1.0), control).solutions, axis=0)[10:20]
@@ -169,10 +169,10 @@ def test_steps_are_as_long_as_turns_and_predictions_allow():
 def test_a_turn_of_0_or_180_degrees_is_one_whatever_rounding_makes_of_its_cosine():
     above = np.nextafter(1.0, 2.0)
     straight, back = (StepResult(None, 0.0, cosine) for cosine in (above, -above))
-    assert STEPS.require_small_errors(straight) is straight
-    assert STEPS.next_length(0.01, straight, 5) == 0.01 * STEPS.max_length_ratio
+    assert STEPS.require_same_curve(straight) is straight
+    assert STEPS.next_length(0.01, straight, 5) == 0.01 * STEPS.max_successive_length_ratio
     with pytest.raises(Unsolvable, match="too large an angle"):
-        STEPS.require_small_errors(back)
+        STEPS.require_same_curve(back)
 
 
 def test_every_step_is_reported_with_the_solutions_before_it():
@@ -227,5 +227,7 @@ def test_a_zero_along_a_step_of_any_length_is_as_accurate_as_asked_for(decades, 
 
 def test_steps_that_never_grow_are_refused():
     """They would end a curve by the number of its solutions, however far its end is."""
-    with pytest.raises(ValueError, match="max_length_ratio"):
-        StepControl(first_length=0.1, max_length=1.0, min_length=1e-6, max_angle=0.3, max_length_ratio=1.0)
+    with pytest.raises(ValueError, match="max_successive_length_ratio"):
+        StepControl(
+            first_length=0.1, max_length=1.0, min_length=1e-6, max_angle=0.3, max_successive_length_ratio=1.0
+        )

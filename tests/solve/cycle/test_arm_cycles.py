@@ -131,7 +131,7 @@ def test_the_mixed_form_has_the_same_motion_to_third_order(name):
     for size in (0.02, 0.01):
         x, V, G = moving(form, size)
         X = mixed.layout.state(form.stresses(x), V)
-        cubic = mixed.trilinear_form(X, X, X) / 6
+        cubic = mixed.trilinear_map(X, X, X) / 6
         S, _ = mixed.stresses_and_velocities(mixed_rate(mixed, X) + cubic)
         errors.append(np.abs(S[:, :-1] - G[:, :-1]).max() / np.abs(G).max())
         balanced = mixed.stresses_and_velocities(mixed_rate(mixed, X) + cubic)[1]

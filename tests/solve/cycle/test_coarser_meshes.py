@@ -45,7 +45,7 @@ def off(orbit, exact):
 
 def test_it_is_nearer_to_the_orbit_than_two_meshes_in_between_are(near):
     coarser = CoarserMeshes(FINE, near, 1e-6 * ACCURACY, MEMORY)
-    orbit, _ = coarser.predicted_orbit_and_errors(FINE)
+    orbit, _ = coarser.fine_mesh_prediction_and_errors(FINE)
     exact = solve_by_newton(orbit, 1e-13, MEMORY).orbit
     between = [
         replace(coarser.coarse_mesh, order=FINE.order),
@@ -59,7 +59,7 @@ def test_it_is_nearer_to_the_orbit_than_two_meshes_in_between_are(near):
 
 
 def test_finer_meshes_differ_by_no_more_than_is_stated(near):
-    orbit, known = CoarserMeshes(FINE, near, ACCURACY, MEMORY).predicted_orbit_and_errors(FINE)
+    orbit, known = CoarserMeshes(FINE, near, ACCURACY, MEMORY).fine_mesh_prediction_and_errors(FINE)
     found = solve_by_newton(orbit, 1e-12, MEMORY).orbit
     for field, parts in zip(("order", "interval_count"), known.mesh_errors, strict=True):
         finer = replace(FINE, **{field: 2 * getattr(FINE, field)})
@@ -87,7 +87,7 @@ def test_coarser_meshes_predict_those_that_are_a_little_finer(near):
 
 @pytest.mark.parametrize("why", ["no coarse cycle", "far off"])
 def test_what_coarser_meshes_do_not_predict_is_measured_by_finer_ones(near, why, monkeypatch):
-    predicted = CoarserMeshes.predicted_orbit_and_errors
+    predicted = CoarserMeshes.fine_mesh_prediction_and_errors
 
     def spoilt(self, mesh):
         orbit, known = predicted(self, mesh)
@@ -95,7 +95,7 @@ def test_what_coarser_meshes_do_not_predict_is_measured_by_finer_ones(near, why,
             return replace(orbit, values=orbit.values * (1 + 1e-4)), known
         raise Unsolvable(why)
 
-    monkeypatch.setattr(CoarserMeshes, "predicted_orbit_and_errors", spoilt)
+    monkeypatch.setattr(CoarserMeshes, "fine_mesh_prediction_and_errors", spoilt)
     alone, first = (
         refined_cycle_of_any_period(near, ACCURACY, MEMORY),
         refined_cycle_of_any_period(near, ACCURACY, MEMORY, "F"),

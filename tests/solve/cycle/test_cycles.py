@@ -23,7 +23,7 @@ from rodsweep.solve.cycle.accuracy.minimal_period import (
     restricted_to_minimal_period,
 )
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.cycle.reference_rod import warm_up
+from rodsweep.solve.cycle.rod_with_known_cycle import warm_up
 from rodsweep.solve.cycle.transient import cycle_search, schemes, transient_integration
 from rodsweep.solve.motion.integrator import destroy_integrators
 from rodsweep.solve.orbit.coefficient_tails import coefficient_tails_of, legendre_analysis_matrix
@@ -31,7 +31,7 @@ from rodsweep.solve.orbit.compiled_measures import write_powers
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CycleMotion, measures_of
 from rodsweep.solve.orbit.newton import newton_step_if_matrix_distant, solve_by_newton
-from rodsweep.solve.orbit.orbit import Orbit, node_times, time_interval_lengths
+from rodsweep.solve.orbit.orbit import Orbit, node_time_fractions, time_interval_lengths
 from rodsweep.solve.orbit.symmetry import NO_SYMMETRY, REFLECTION
 from rodsweep.solve.orbit.time_grading import UNIFORM_TIME_GRADING
 from rodsweep.solve.unsolvable import Unsolvable
@@ -340,7 +340,7 @@ def orbit_at_fifty():
 def repeated(half, times):
     """A symmetric orbit over so many of its halves, as one that is not known to be symmetric."""
     K = times * (half.interval_count - 1) + 1
-    at = times * node_times(K, half.stage_count)
+    at = times * node_time_fractions(K, half.stage_count)
     number = np.floor(at + 1e-9)
     states = half.states_at_time_fractions(np.maximum(at - number, 0.0))
     later = number % 2 == 1

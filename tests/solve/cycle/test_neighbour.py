@@ -103,13 +103,13 @@ def test_errors_in_space_of_several_elements_are_kept_where_errors_in_time_are_m
     orbit = handed.predictor.orbit
     grown = replace(
         calibration.with_errors_scaled_on_chain(orbit, 0.05, calibration.error_indicators),
-        relative_parameter_change=0.05,
-        space_time_error_growth=np.array([1.1, 1.2]),
+        parameter_change_since_measurement=0.05,
+        error_growth_since_measurement=np.array([1.1, 1.2]),
     )
     measured = measured_mesh_error_calibration(solve_by_newton(orbit, 1e-11, memory), REQUEST.accuracy, grown)
     assert not grown.is_measured_at_orbit
     assert measured.is_measured_at_orbit
-    assert measured.relative_parameter_change == (0.05 if is_kept else 0.0)
+    assert measured.parameter_change_since_measurement == (0.05 if is_kept else 0.0)
     assert measured.mesh_errors[1] == pytest.approx(calibration.mesh_errors[1], rel=0.3)
     expected = calibration.mesh_errors[0] * ([1.1, 1.1, 1.2, 1.2, 1.2] if is_kept else 1.0)
     assert measured.mesh_errors[0] == pytest.approx(expected, rel=1e-12 if is_kept else 0.3)

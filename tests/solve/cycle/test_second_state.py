@@ -8,7 +8,7 @@ from shown import shown
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.limit_cycle import SECOND_STABLE_STATES
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.cycle.second_state import SecondStableState, second_state
+from rodsweep.solve.cycle.second_state import SecondStableState, second_state_force_and_message
 from rodsweep.solve.hopf.subcritical_hopf import subcritical_hopf_near
 
 FIG_2C = (200.0, 1e4, 1e-4)
@@ -29,7 +29,7 @@ def test_words_have_the_numbers_of_the_solver():
 )
 def test_rod_below_a_supercritical_hopf_point_or_far_from_any_has_no_second_state(rod, F):
     assert subcritical_hopf_near(rod_of(F, *rod)) is None
-    state, at, message = second_state(rod_of(F, *rod), CycleStatus.straight, True)
+    state, at, message = second_state_force_and_message(rod_of(F, *rod), CycleStatus.straight, True)
     assert (state, message) == (SecondStableState.none_known, "")
     assert np.isnan(at)
 
@@ -60,7 +60,7 @@ def test_the_nearer_of_two_subcritical_hopf_points_is_named():
     ],
 )
 def test_state_is_told_from_the_straight_rod(status, stable, state):
-    assert second_state(rod_of(180.0, *FIG_2C), status, stable)[0] == state
+    assert second_state_force_and_message(rod_of(180.0, *FIG_2C), status, stable)[0] == state
 
 
 def test_small_start_below_a_subcritical_hopf_point_ends_straight_with_a_cycle_possible():

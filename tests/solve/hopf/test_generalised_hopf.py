@@ -40,7 +40,10 @@ phase_diagram: {criticality: true}
 
 
 def curve_of(plane, F, k1, frequency):
-    start = [axis.scaled_coordinate({"F": F, "k1": k1, "gamma3": GAMMA3}[axis.name]) for axis in plane.axes]
+    start = [
+        axis.scaled_coordinate({"F": F, "k1": k1, "gamma3": GAMMA3}[axis.parameter_name])
+        for axis in plane.axes
+    ]
     return trace_boundary(0.0, plane, tuple(start), frequency)
 
 
@@ -61,7 +64,7 @@ def found():
 @pytest.mark.long
 def test_a_generalised_hopf_point_is_that_of_other_equations(found):
     """Newton's method in (F, k1) on the second normal form leaves it where it is."""
-    (point,) = found[2].points
+    (point,) = found[2].bautin_points
 
     def growth_and_c(values):
         rod = (*values, K2, GAMMA3, 1.0)
@@ -85,7 +88,7 @@ def test_a_generalised_hopf_point_is_that_of_other_equations(found):
 
 def test_the_side_changes_once_and_at_the_point(found):
     plane, curve, told = found
-    (point,) = told.points
+    (point,) = told.bautin_points
     assert told.unlocated_sign_change_count == 0
     assert set(told.criticality) == {-1.0, 1.0}
     (after,) = np.flatnonzero(np.diff(told.criticality))
@@ -102,10 +105,10 @@ def test_the_side_changes_once_and_at_the_point(found):
 
 
 def test_it_is_the_same_on_finer_meshes_and_from_other_neighbours(found):
-    (point,) = found[2].points
-    finer = curve_criticality(*found[:2], 1e-12).points
+    (point,) = found[2].bautin_points
+    finer = curve_criticality(*found[:2], 1e-12).bautin_points
     elsewhere = over_F_and_k1((50.0, 125.0), (146.0, 300.0), logarithmic=True)
-    others = curve_criticality(*elsewhere, 1e-10).points
+    others = curve_criticality(*elsewhere, 1e-10).bautin_points
     for (other,) in (finer, others):
         for value, error, theirs, their_error in zip(
             point.parameter_values,
@@ -119,19 +122,19 @@ def test_it_is_the_same_on_finer_meshes_and_from_other_neighbours(found):
 
 
 def test_another_plane_through_the_same_rod_has_it_too(found):
-    (point,) = found[2].points
+    (point,) = found[2].bautin_points
     F, k1 = point.parameter_values
     axes = PlaneAxis("k1", 140.0, 160.0), PlaneAxis("gamma3", 1e-5, 1e-3, is_logarithmic=True)
     plane = ParameterPlane(Rod(F=F, k1=200.0, k2=K2, gamma3=GAMMA3), axes)
-    (other,) = curve_criticality(plane, curve_of(plane, F, k1, point.frequency), 1e-10).points
+    (other,) = curve_criticality(plane, curve_of(plane, F, k1, point.frequency), 1e-10).bautin_points
     assert other.parameter_values == pytest.approx((k1, GAMMA3), rel=1e-8)
 
 
 def test_axial_drag_moves_it_along_the_hopf_curve(found):
     plane, curve, told = found
     (point,), (other,) = (
-        told.points,
-        curve_criticality(replace(plane, rod=plane.rod.with_values(gamma1=0.5)), curve, 1e-10).points,
+        told.bautin_points,
+        curve_criticality(replace(plane, rod=plane.rod.with_values(gamma1=0.5)), curve, 1e-10).bautin_points,
     )
     assert abs(other.parameter_values[0] - point.parameter_values[0]) > 1e-3
     c = coefficients((*other.parameter_values, K2, GAMMA3, 0.5), 1j * other.frequency, 24)[0]
@@ -152,7 +155,7 @@ def test_where_the_normal_form_fails_the_side_is_not_known_and_no_other_is_lost(
     again = curve_criticality(plane, curve, 1e-10)
     assert np.flatnonzero(np.isnan(again.criticality)).tolist() == [3]
     assert np.array_equal(np.delete(again.criticality, 3), np.delete(told.criticality, 3))
-    assert again.points == told.points
+    assert again.bautin_points == told.bautin_points
 
 
 def test_a_change_that_cannot_be_located_is_counted(found, monkeypatch):
@@ -166,7 +169,7 @@ def test_a_change_that_cannot_be_located_is_counted(found, monkeypatch):
 
     monkeypatch.setattr(bautin_points, "hopf_coefficients", jumps)
     again = curve_criticality(plane, curve, 1e-10)
-    assert (again.points, again.unlocated_sign_change_count) == ((), 1)
+    assert (again.bautin_points, again.unlocated_sign_change_count) == ((), 1)
     assert np.array_equal(again.criticality, told.criticality)
 
 
@@ -186,7 +189,9 @@ def test_a_point_is_located_if_rounding_makes_Re_c_exactly_zero(found, monkeypat
     monkeypatch.setattr(hopf_coefficients, "normal_form_on", rounded)
     again = curve_criticality(plane, curve, 1e-10)
     assert again.unlocated_sign_change_count == 0
-    assert again.points[0].parameter_values == pytest.approx(located.points[0].parameter_values, rel=1e-10)
+    assert again.bautin_points[0].parameter_values == pytest.approx(
+        located.bautin_points[0].parameter_values, rel=1e-10
+    )
     assert np.isinf(zeros[0].amplitude_coefficient)
     assert np.isinf(zeros[0].frequency_slope)
 
@@ -194,13 +199,13 @@ def test_a_point_is_located_if_rounding_makes_Re_c_exactly_zero(found, monkeypat
 def test_a_point_within_the_error_of_the_change_is_undecided_and_brackets_nothing(found):
     """A point of the curve put where Re c vanishes: the bracket reaches over it."""
     plane, curve, told = found
-    (point,) = told.points
+    (point,) = told.bautin_points
     x, y = (axis.scaled_coordinate(v) for axis, v in zip(plane.axes, point.parameter_values, strict=True))
     there = np.insert(curve.scaled_points, point.preceding_index + 1, [x, y, np.log(point.frequency)], axis=0)
     again = curve_criticality(plane, replace(curve, scaled_points=there), 1e-10)
     assert again.criticality[point.preceding_index + 1] == 0
-    assert again.points[0].parameter_values == pytest.approx(point.parameter_values, rel=1e-10)
-    assert again.points[0].preceding_index in (point.preceding_index, point.preceding_index + 1)
+    assert again.bautin_points[0].parameter_values == pytest.approx(point.parameter_values, rel=1e-10)
+    assert again.bautin_points[0].preceding_index in (point.preceding_index, point.preceding_index + 1)
 
 
 @pytest.mark.long

@@ -11,8 +11,8 @@ import pytest
 from mixed_motion import mixed_form, whole_A
 from rods import rod_of
 
-from rodsweep.determinant.roots.newton import eigenvalue_by_newton
-from rodsweep.determinant.value import eigenvalue_error_and_scales
+from rodsweep.determinant.roots.newton import eigenvalue_with_slope_and_error
+from rodsweep.determinant.value import root_error_w_scale_and_wave_number
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.hopf.normal_form import (
@@ -77,7 +77,7 @@ def test_right_mode_deflects_the_tip_by_a_half(rod, w):
 @EACH
 def test_slope_is_that_of_the_root_of_the_determinant(rod, w):
     direction = Coefficients(1.0, -rod.c1, 0.0, 0.0)
-    root, slope, _ = eigenvalue_by_newton(w, rod.coefficients, direction)
+    root, slope, _ = eigenvalue_with_slope_and_error(w, rod.coefficients, direction)
     assert root == pytest.approx(w, rel=1e-13)
     assert normal_of(rod, w).eigenvalue_slope == pytest.approx(slope, rel=1e-9)
 
@@ -103,8 +103,8 @@ def test_second_order_fields_satisfy_their_equations(rod, w):
     form, normal = form_of(rod), normal_of(rod, w)
     q, M = normal.q, np.diag(form.M)
     for matrix, field, source in (
-        (2j * normal.w.imag * M - whole_A(form), normal.h20, form.bilinear_form(q, q)),
-        (-whole_A(form), normal.h11, form.bilinear_form(q, q.conj())),
+        (2j * normal.w.imag * M - whole_A(form), normal.h20, form.bilinear_map(q, q)),
+        (-whole_A(form), normal.h11, form.bilinear_map(q, q.conj())),
     ):
         assert np.abs(matrix @ field - source).max() <= 1e-12 * (np.abs(matrix) @ np.abs(field)).max()
         assert np.all(form.reflection_signs * field == field)
@@ -145,7 +145,7 @@ def hopf_points():
             if event["kind"].startswith("hopf"):
                 numbers = event["F"], row["k1"], row["k2"], row["gamma3"]
                 rod, w = rod_of(*map(float, numbers)), 1j * float(event["frequency"])
-                if eigenvalue_error_and_scales(w, rod.coefficients)[2] < 10 * np.pi:
+                if root_error_w_scale_and_wave_number(w, rod.coefficients)[2] < 10 * np.pi:
                     yield rod, w
 
 

@@ -66,8 +66,8 @@ def test_a_place_out_of_reach_is_drawn_towards_the_clamp(rod):
     x, y = system.tip_coordinates(bent_state_with_tip_at(system, 3.0, 4.0))[:2]
     assert (x, y) == pytest.approx(
         (
-            0.6 * TIP_TARGET_SETTINGS.max_tip_distance_over_length * length,
-            0.8 * TIP_TARGET_SETTINGS.max_tip_distance_over_length * length,
+            0.6 * TIP_TARGET_SETTINGS.max_clamp_distance_over_length * length,
+            0.8 * TIP_TARGET_SETTINGS.max_clamp_distance_over_length * length,
         ),
         abs=1e-8,
     )

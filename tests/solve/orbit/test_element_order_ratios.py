@@ -14,8 +14,8 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below_force, orbit_from_hopf
 from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_for_branch_to_cycle
-from rodsweep.solve.orbit.coefficient_tails import coefficients_of_elements
-from rodsweep.solve.orbit.element_order_ratios import (
+from rodsweep.solve.orbit.coefficient_tails import largest_coefficients_of_elements
+from rodsweep.solve.orbit.element_order_choice import (
     ROD_ELEMENT_ORDER_RATIO_SETTINGS,
     element_order_ratios,
     without_excess_orders,
@@ -67,7 +67,7 @@ def test_coefficients_beyond_the_order_of_an_element_are_small():
     ratios = element_order_ratios(fine, grid.order, aim)
     assert ROD_ELEMENT_ORDER_RATIO_SETTINGS.min_element_order_ratio <= min(ratios) <= 0.5
     assert max(ratios) == 1
-    each = coefficients_of_elements(fine)
+    each = largest_coefficients_of_elements(fine)
     largest = np.max([c.max(axis=1) for c in each], axis=0)
     for c, order in zip(each, mesh_with_edges(grid.edges, grid.order, ratios).orders, strict=True):
         assert (c[:, order:] <= aim * largest[:, None]).all()

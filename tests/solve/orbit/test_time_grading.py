@@ -20,7 +20,7 @@ from rodsweep.solve.orbit.mesh_choice import (
     mesh_from_coefficient_tails,
 )
 from rodsweep.solve.orbit.newton import relative_change, solve_by_newton
-from rodsweep.solve.orbit.orbit import node_times, time_interval_lengths
+from rodsweep.solve.orbit.orbit import node_time_fractions, time_interval_lengths
 from rodsweep.solve.orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh, mesh_of_orbit
 from rodsweep.solve.orbit.stored_orbit import orbit_arrays, orbit_from_arrays
 from rodsweep.solve.orbit.time_grading import UNIFORM_TIME_GRADING, TimeGrading
@@ -64,7 +64,7 @@ def test_graded_and_uniform_orbits_agree_in_all_measures():
     count = min(len(a.harmonic_amplitude), len(b.harmonic_amplitude))
     assert a.harmonic_amplitude[:count] == pytest.approx(b.harmonic_amplitude[:count], abs=1e-9)
     assert a.injection_mean == pytest.approx(b.injection_mean, rel=1e-9)
-    assert graded.mean_crossing_time == pytest.approx(uniform.mean_crossing_time, abs=1e-9)
+    assert graded.tip_y_mean_crossing_time == pytest.approx(uniform.tip_y_mean_crossing_time, abs=1e-9)
     energies = (
         graded.energy_and_powers_from_mean_crossing(30),
         uniform.energy_and_powers_from_mean_crossing(30),
@@ -126,7 +126,7 @@ def test_a_graded_orbit_over_the_whole_period_is_a_solution():
 def test_three_graded_periods_are_cut_to_one():
     half = orbit_with(40, GRADING)
     thrice = half.on_mesh(half.form.mesh, 118, 4)
-    at = 3 * node_times(118, 4, GRADING)
+    at = 3 * node_time_fractions(118, 4, GRADING)
     number = np.minimum(np.floor(at + 1e-12), 2)
     states = half.states_at_time_fractions(np.clip(at - number, 0, 1))
     odd = number == 1

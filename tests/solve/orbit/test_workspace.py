@@ -134,8 +134,8 @@ def test_a_buffer_starts_at_a_cache_line():
 def test_a_released_workspace_keeps_what_most_rods_need():
     workspace = NewtonWorkspace()
     for numbers, kept in (
-        (WORKSPACE_SETTINGS.max_kept_buffer_size, True),
-        (WORKSPACE_SETTINGS.max_kept_buffer_size + 1, False),
+        (WORKSPACE_SETTINGS.max_kept_buffer_doubles, True),
+        (WORKSPACE_SETTINGS.max_kept_buffer_doubles + 1, False),
     ):
         memory = FactorStorage(workspace, -(-numbers // block_count(3)), 3, 1)
         buffer = memory.factors.eliminated_blocks.base

@@ -11,7 +11,7 @@ from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.path import carried_arm_count, neighbouring_rods
-from rodsweep.solve.spectrum.path.carried_arm_count import ArmCountCarrier, confirmed_count_at
+from rodsweep.solve.spectrum.path.carried_arm_count import ArmCountCarrier, confirmed_mode_count_at
 from rodsweep.solve.spectrum.path.followed_arms import FollowedArms
 from rodsweep.solve.spectrum.path.neighbouring_rods import NeighbouringRods, follow_spectra_of_arms
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -104,8 +104,8 @@ def test_a_second_count_that_disagrees_takes_the_carried_counts_back(monkeypatch
     single = []
     monkeypatch.setattr(
         neighbouring_rods,
-        "confirmed_count_at",
-        lambda *words: single.append(words[2]) or confirmed_count_at(*words),
+        "confirmed_mode_count_at",
+        lambda *words: single.append(words[2]) or confirmed_mode_count_at(*words),
     )
     followed = follow_spectra_of_arms(path, values, REQUEST)
     assert followed.is_accepted.all()

@@ -16,9 +16,9 @@ from rodsweep.model.material.profile import Profile
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum import problem, search
+from rodsweep.solve.spectrum.krylov_schur_on_two_meshes import solve_on_two_meshes
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
-from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
 
 REQUEST = SpectrumRequest(4, 1e-10, certify=True)
 ONES = Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6))
@@ -169,7 +169,9 @@ def test_growing_modes_beyond_enough_are_solved_for_only_for_a_count(monkeypatch
         return whole(rod_problem, mesh, number, vectors, tight)
 
     monkeypatch.setattr(search, "candidates_on_mesh", attempt)
-    monkeypatch.setattr(search, "SEARCH_SETTINGS", replace(search.SEARCH_SETTINGS, max_unproved_modes=2))
+    monkeypatch.setattr(
+        search, "SEARCH_SETTINGS", replace(search.SEARCH_SETTINGS, max_modes_found_without_proof=2)
+    )
     if not countable:
         monkeypatch.setattr(problem, "hull_of", lambda rod: UNBOUNDED_HULL)
     found = solve_spectrum(rod, SpectrumRequest(2, 1e-6, certify=True))

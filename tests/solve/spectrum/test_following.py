@@ -12,8 +12,8 @@ from surveyed import RODS
 from rodsweep.determinant import moving_line
 from rodsweep.determinant.certificate.winding_number import count_right_of, phase_change_by_nodes
 from rodsweep.determinant.moving_line import (
-    IntervalEnd,
-    proves_no_crossing,
+    RodAndLineAtEnd,
+    no_crossing_proof_and_count,
     rectangle_proof_and_costs,
 )
 from rodsweep.determinant.parameter_path import ParameterPath
@@ -82,7 +82,7 @@ def random_strips(count: int):
             rod = whole.rod_at(int(at))
             w = eigenvalues(rod)
             at_line = float(w[gap - 1].real + w[gap].real) / 2
-            ends.append(IntervalEnd(float(whole.path_variables[at]), rod.coefficients, at_line))
+            ends.append(RodAndLineAtEnd(float(whole.path_variable_values[at]), rod.coefficients, at_line))
             counts.append(count_right_of(at_line, rod).number if math.isfinite(at_line) else None)
         if None not in counts and max(end.line for end in ends) < 0 and ends[0].p != ends[1].p:
             count -= 1
@@ -100,11 +100,13 @@ def test_what_crosses_a_moving_line_is_never_overlooked():
     """Where the counts at both ends differ something crosses, in either direction of the path."""
     strips = list(random_strips(100))
     assert sum(a != b for _, _, (a, b) in strips) > 30
-    proved, wrong = wrong_proofs(proves_no_crossing, strips)
+    proved, wrong = wrong_proofs(no_crossing_proof_and_count, strips)
     assert proved > 15
     assert wrong == 0
     for ends, direction, _ in strips:
-        assert proves_no_crossing(*ends, direction, 2000) == proves_no_crossing(*ends[::-1], direction, 2000)
+        assert no_crossing_proof_and_count(*ends, direction, 2000) == no_crossing_proof_and_count(
+            *ends[::-1], direction, 2000
+        )
 
 
 def holds_always(*words):
@@ -125,14 +127,14 @@ def test_a_broken_proof_is_noticed(monkeypatch, name, broken):
     """Without the remainder, or the width of a rectangle in p, strips are proved that counts refute."""
     monkeypatch.setattr(moving_line, "rectangle_proof_and_costs", rectangle_proof_and_costs.py_func)
     monkeypatch.setattr(moving_line, name, broken)
-    _, wrong = wrong_proofs(proves_no_crossing.py_func, random_strips(20))
+    _, wrong = wrong_proofs(no_crossing_proof_and_count.py_func, random_strips(20))
     assert wrong >= 3
 
 
 @pytest.mark.parametrize("half", [(-1.0, 1.0), (1.0, -1.0), (0.0, 1.0), (1.0, math.nan)])
 def test_rectangles_without_an_inside_are_refused(half):
     rod = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
-    at = IntervalEnd(30.0, rod.coefficients, -20.0)
+    at = RodAndLineAtEnd(30.0, rod.coefficients, -20.0)
     with pytest.raises(ValueError, match="half-widths of a rectangle must be above 0"):
         rectangle_proof_and_costs(at, 5.0, Coefficients(1.0, -1e-4, 0.0, 0.0), half, 0.0)
 
@@ -145,7 +147,7 @@ def test_what_is_proved_has_no_zero_inside():
         p, at_line, y = rng.uniform(5, 60), -(10 ** rng.uniform(0, 5)), 10 ** rng.uniform(0, 5)
         half = (y * 10 ** rng.uniform(-2, -0.4), 10 ** rng.uniform(-3, 0.5))
         tilt = rng.normal() * at_line / 10
-        at = IntervalEnd(p, path.rod_at(p).coefficients, at_line)
+        at = RodAndLineAtEnd(p, path.rod_at(p).coefficients, at_line)
         if rectangle_proof_and_costs(at, y, path.direction, half, tilt)[0]:
             proved += 1
             for share in (-1, -0.3, 0.6, 1):
@@ -202,7 +204,7 @@ def test_a_count_that_disagrees_stops_what_is_followed(monkeypatch):
     """Where no strip is proved every point is counted; where that fails too each point begins anew."""
     whole = line("F", np.linspace(10, 40, 12), k1=1e4, k2=1e4, gamma3=1e-4)
     usual = solve_stretch(whole, REQUEST)
-    monkeypatch.setattr(neighbouring_rods, "carry_count", lambda *words: 0)
+    monkeypatch.setattr(neighbouring_rods, "last_point_with_carried_count", lambda *words: 0)
     counted = solve_stretch(whole, REQUEST)
     assert counted.certified.all()
     assert (counted.elements == 0).all()

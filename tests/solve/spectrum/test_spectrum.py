@@ -14,13 +14,13 @@ from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.model.dispersion import largest_growth_and_wave_number
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
+from rodsweep.solve.spectrum import krylov_schur_on_two_meshes, search
 from rodsweep.solve.spectrum import problem as problem_module
-from rodsweep.solve.spectrum import search, two_meshes
 from rodsweep.solve.spectrum.krylov_schur import uniform_solver
+from rodsweep.solve.spectrum.krylov_schur_on_two_meshes import solve_on_two_meshes
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.shift_invert import KRYLOV_SETTINGS
 from rodsweep.solve.spectrum.status import SpectrumStatus
-from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
 
 TIGHT = SpectrumRequest(mode_count=4, accuracy=1e-12, certify=True)
 
@@ -272,7 +272,7 @@ STRONGLY_PULLED = Rod(F=-1e5, k1=1e8, k2=1e8, gamma3=1.0)
 
 @pytest.fixture
 def fixed_shift(monkeypatch):
-    monkeypatch.setattr(problem_module, "_shift_over_waves", lambda rod, growth: 0.0)
+    monkeypatch.setattr(problem_module, "_shift_right_of_waves", lambda rod, growth: 0.0)
 
 
 def test_the_shift_of_a_strongly_pulled_rod_is_off_its_leading_eigenvalue():
@@ -315,7 +315,9 @@ def test_a_thin_cone_whose_waves_no_mesh_resolves_names_the_force_and_the_taper(
 
 def test_two_meshes_name_the_number_of_meshes_without_a_result(monkeypatch):
     monkeypatch.setattr(
-        two_meshes, "TWO_MESH_SETTINGS", replace(two_meshes.TWO_MESH_SETTINGS, max_finer_meshes=0)
+        krylov_schur_on_two_meshes,
+        "TWO_MESH_SETTINGS",
+        replace(krylov_schur_on_two_meshes.TWO_MESH_SETTINGS, max_finer_meshes=0),
     )
     result = solve_on_two_meshes(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), TIGHT)
     assert result.status == SpectrumStatus.failed

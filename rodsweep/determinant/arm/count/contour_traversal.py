@@ -24,9 +24,9 @@ class ContourTraversal(NamedTuple):
     `distance_on_side` from the start of this side.
 
     phase_change: change of arg D so far. node_count: number of nodes so far. last_node: the last node.
-    valid_radius_growth: change of the valid radius per distance. distance_to_next_node: distance of the next
-    node, 0 if not chosen yet. required_w_bound: |w| for which propagators are needed to continue; 0 at the
-    end, inf if the change of phase is not determined.
+    valid_radius_growth: change of the valid radius per distance. distance_to_next_node: distance from the
+    last node to the next node, 0 if not chosen yet. required_w_bound: |w| for which propagators are needed to
+    continue; 0 at the end, inf if the change of phase is not determined.
     """
 
     side_number: int
@@ -49,8 +49,9 @@ def continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one w
     level: PropagatorsUpToW,
 ) -> ContourTraversal:
     """Continues a traversal of the box to the end, or until propagators for another |w| are needed. box:
-    (corners, largest |w| for which propagators are known to exist). level: (W, propagators) in use. samples:
-    samples of the arm's coefficients, which give the lengths over which D changes and the dominant wave."""
+    (corners, largest |w| for which propagators are known to exist). known_w: eigenvalues divided out of D,
+    (n,). level: (W, propagators) in use. samples: samples of the arm's coefficients, which give the lengths
+    over which D changes and the dominant wave."""
     corners, largest_w = box
     side, t, change, nodes, node, growth, step, _ = traversal
     while side < len(corners) - 1:
@@ -89,8 +90,8 @@ def _first_radius_and_required_w(
     w: complex, unit: float, last_radius: float, largest_w: float
 ) -> tuple[float, float]:
     """Returns (radius of the first circle about the node w, |w| for which propagators are needed). unit:
-    length over which D changes. last_radius: radius of the circle at the last node, 0 if it has none.
-    largest_w: largest |w| for which propagators are known to exist."""
+    length over which D changes. last_radius: radius of the circle about the last node, 0 if the node has no
+    circle. largest_w: largest |w| for which propagators are known to exist."""
     first = CONTOUR_SETTINGS.first_circle_radius_over_w_scale * unit
     radius = first
     if last_radius > 0:
@@ -103,7 +104,8 @@ def _first_radius_and_required_w(
 
 @compiled
 def _is_phase_lost(node: PhaseNode, node_count: int) -> bool:
-    """Whether the phase is lost: the valid radius of the node is too small, or there are too many nodes."""
+    """Whether the phase is lost, because the valid radius of the node is too small or there are too many
+    nodes."""
     min_radius = CONTOUR_SETTINGS.min_valid_radius_over_w * abs(node.w)
     # Negated, so that a valid radius of nan counts as lost.
     return not node.valid_radius > min_radius or node_count > CONTOUR_SETTINGS.max_nodes
@@ -111,7 +113,8 @@ def _is_phase_lost(node: PhaseNode, node_count: int) -> bool:
 
 @compiled
 def _are_propagators_reusable(W: float, required_W: float) -> bool:
-    """Whether propagators for |w| <= W are valid at |w| = `required_W`, with W not much larger than that."""
+    """Whether propagators for |w| <= W are valid at |w| = `required_W`, and W is not much larger than
+    `required_W`."""
     return (
         required_W <= W <= CONTOUR_SETTINGS.max_reused_W_over_w * max(required_W, ARM_ELEMENT_SETTINGS.min_W)
     )
@@ -120,8 +123,9 @@ def _are_propagators_reusable(W: float, required_W: float) -> bool:
 @compiled
 def _distance_to_next_node(reach: float, growth: float) -> float:
     """Distance to the next node: `distance_over_sum_of_valid_radii` times the sum of the current valid radius
-    and of the valid radius expected there. reach: the current valid radius. growth: expected change of the
-    valid radius per distance, clipped to between -1 and `max_valid_radius_growth`."""
+    and of the valid radius expected at the next node. reach: the current valid radius. growth: expected
+    change of the valid radius per distance, here limited to the range from -1 to
+    `max_valid_radius_growth`."""
     overlap = CONTOUR_SETTINGS.distance_over_sum_of_valid_radii
     return (
         2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), CONTOUR_SETTINGS.max_valid_radius_growth))
@@ -133,7 +137,7 @@ def _shortened_distance_to_next_node(reach: float, growth: float, distance: floa
     """A distance to the next node below `distance`. Repeated calls lead to a distance below `reach`, the
     valid radius. growth: expected change of the valid radius per distance."""
     shorter_distance = min(
-        _distance_to_next_node(reach, growth), CONTOUR_SETTINGS.max_shortened_step_ratio * distance
+        _distance_to_next_node(reach, growth), CONTOUR_SETTINGS.max_shortened_over_previous_step * distance
     )
     return (
         shorter_distance

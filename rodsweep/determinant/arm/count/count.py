@@ -76,8 +76,8 @@ def count_right_of(
 
 
 def is_countable(determinant: ArmDeterminant, hull: EigenvalueHull) -> bool:
-    """Whether eigenvalues right of a line Re w <= 0 are countable: the hull is bounded, elements resolve
-    D."""
+    """Whether eigenvalues right of a line Re w <= 0 can be counted, that is, whether the hull is bounded and
+    elements resolve D."""
     if not math.isfinite(hull.a):
         return False
     try:
@@ -88,21 +88,21 @@ def is_countable(determinant: ArmDeterminant, hull: EigenvalueHull) -> bool:
 
 
 def largest_w_of_count(line: float, determinant: ArmDeterminant, hull: EigenvalueHull) -> float:
-    """The largest |w| at which a count right of the line evaluates D."""
+    """The largest |w| at which a count of the eigenvalues with Re w > `line` evaluates D."""
     corner = _upper_right_corner(line, hull)
     return abs(corner) + CONTOUR_SETTINGS.first_circle_radius_over_w_scale * determinant.w_scale(corner)
 
 
 def _upper_right_corner(line: float, hull: EigenvalueHull) -> complex:
-    """Upper right corner of the contour about all eigenvalues right of the line."""
+    """Upper right corner of the contour about all eigenvalues with Re w > `line`."""
     return upper_contour_corner(line, hull.box(max(-line, 0.0)))
 
 
 def _phase_change(
     line: float, determinant: ArmDeterminant, hull: EigenvalueHull, known_w: Complex
 ) -> tuple[float, int]:
-    """Returns (change along the upper half of the box of arg D with `known_w` divided out; number of nodes).
-    Raises `PhaseLost` if a node's valid radius is too small, or too many nodes are needed."""
+    """Returns (change of arg D, with `known_w` divided out of D, along the upper half of the box; number of
+    nodes). Raises `PhaseLost` if a node's valid radius is too small, or too many nodes are needed."""
     corner = _upper_right_corner(line, hull)
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
     # The elements for the largest |w| come first, because they serve most other w of the contour.

@@ -42,7 +42,7 @@ class NearAxisSettings(KernelConstants):
         "start_frequency_ratio": (1.0, math.inf),
         "max_distance_from_start_over_frequency": (0.0, 1.0),
     }
-    """Exclusive bounds (lower, upper) of fields, by name, that the proofs require; see `KernelConstants`."""
+    """Exclusive bounds (lower, upper) of fields, by name; see `KernelConstants`."""
 
 
 NEAR_AXIS_SETTINGS = NearAxisSettings()
@@ -65,7 +65,7 @@ def modes_near_axis(determinant: ArmDeterminant, max_frequency: float, known_w: 
             max_frequency, W / (1 + NEAR_AXIS_SETTINGS.max_distance_from_start_over_frequency)
         ):
             heights.append(heights[-1] * NEAR_AXIS_SETTINGS.start_frequency_ratio)
-        eigenvalues = _modes_from(
+        eigenvalues = _known_and_found_modes(
             np.array(heights), eigenvalues, (W, propagators), determinant.exponent_samples_at_gauss_points
         )
         height = heights[-1] * NEAR_AXIS_SETTINGS.start_frequency_ratio
@@ -73,7 +73,7 @@ def modes_near_axis(determinant: ArmDeterminant, max_frequency: float, known_w: 
 
 
 @compiled
-def _modes_from(
+def _known_and_found_modes(
     heights: Array, known_w: Complex, propagator_set: PropagatorsUpToW, samples: ExponentSamples
 ) -> Complex:
     """The known eigenvalues, (n,), followed by the eigenvalues that Newton's method finds from w = i height,

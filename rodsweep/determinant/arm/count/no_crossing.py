@@ -1,19 +1,18 @@
-"""Whether no unknown eigenvalue of the arms of an interval lies on a vertical line.
+"""Whether no unknown eigenvalue lies on a vertical line, for any arm of an interval of a parameter p.
 
 If all eigenvalues right of the line are known at one arm of the interval, and no unknown eigenvalue lies on
 the line for any arm, then all eigenvalues right of the line are known at every arm. The upper half of the
 line inside the hull of the spectrum suffices, because eigenvalues come in conjugate pairs.
 
-Discs about nodes w0 cover the line. On the circle of a disc, with the known eigenvalues w_n(p) near the disc
-divided out,
+Discs about nodes w0 cover the line. For each disc, the known eigenvalues w_n(p) near it are divided out:
 
     f(v, p) = D(v, p)/prod (v - w_n(p)) exp(-h(v, p)),
 
-h as in `rodsweep.determinant.arm.count.phase_node`, but with Phi(v, p) of each arm, is compared with f(w0, q)
-of the middle arm q. If |f(v, p) - f(w0, q)| < |f(w0, q)| on the circle, f has no zero in the disc, by the
-maximum principle. This is an estimate: f is evaluated at `CONTOUR_SETTINGS.circle_point_count` points of the
-circle and at a few arms, with one safety factor for values between the points and one for the arms between
-these arms."""
+with h as in `rodsweep.determinant.arm.count.phase_node`, but with Phi(v, p) of each arm. On the circle, f is
+compared with f(w0, q), q: p of the middle arm. If |f(v, p) - f(w0, q)| < |f(w0, q)|, f has no zero in the
+disc, by the maximum principle. This is an estimate: f is evaluated at `CONTOUR_SETTINGS.circle_point_count`
+points of the circle and at a few arms, with one safety factor for values between the points and one for the
+arms between these arms."""
 
 import cmath
 import math
@@ -29,7 +28,7 @@ from ..arm_family import ArmFamily
 from ..completeness import is_real_or_conjugate_known
 from ..determinant import ArmDeterminant, coefficient_samples, elements_for
 from ..elements.propagators import element_propagators
-from ..family_values import propagators_at
+from ..family_values import W_and_propagators_at
 from ..hull.region import EigenvalueHull, PathHulls
 from ..local_waves import ExponentSamples, mean_wave_number_and_w_scale
 from ..value import determinant_from_propagators, scaled_determinant_from_propagators
@@ -37,13 +36,13 @@ from .dominant_wave import dominant_exponent_slope, dominant_wave_exponent
 from .settings import CONTOUR_SETTINGS, NO_CROSSING_SETTINGS
 
 
-class ArmsOfInterval(NamedTuple):
+class SampledArmsOfInterval(NamedTuple):
     """Some arms of an interval: the middle arm, then the arms at both ends, then further arms.
 
     known_eigenvalues, known_errors: eigenvalues followed from arm to arm, and their errors, (n, m) each.
     squared_exponent_coefficients, quadrature_weights: as in `ExponentSamples`, (n, 4, points) and (points,).
     largest_w, propagators: W, and the propagators of the arms for |w| <= W, (n, elements, terms,
-    PADDED_LENGTH).
+    PROPAGATOR_LENGTH).
     """
 
     known_eigenvalues: Complex
@@ -104,9 +103,9 @@ def proves_no_crossing_of_arms(
         return False
     samples = [ArmDeterminant(rod).exponent_samples_at_gauss_points for rod in rods]
     squares = np.array([exponent_samples.squared_exponent_coefficients for exponent_samples in samples])
-    propagators = [propagators_at(family, p_of_arm)[1] for p_of_arm in list_of(p)]
+    propagators = [W_and_propagators_at(family, p_of_arm)[1] for p_of_arm in list_of(p)]
     weights = samples[0].quadrature_weights
-    arms = ArmsOfInterval(w, error, squares, weights, family.largest_w, np.array(propagators))
+    arms = SampledArmsOfInterval(w, error, squares, weights, family.largest_w, np.array(propagators))
     scale = mean_wave_number_and_w_scale(complex(line, 0.0), samples[0])[1]
     first_radius = CONTOUR_SETTINGS.first_circle_radius_over_w_scale * scale
     min_radius = NO_CROSSING_SETTINGS.min_radius_over_w_scale * scale
@@ -127,7 +126,7 @@ def proves_no_crossing_of_arms(
 
 @compiled
 def covered_height(
-    line: float, start: float, top: float, radii: tuple[float, float], arms: ArmsOfInterval
+    line: float, start: float, top: float, radii: tuple[float, float], arms: SampledArmsOfInterval
 ) -> tuple[float, float]:
     """Returns (height, radius). height: no unknown eigenvalue lies on the line between Im w = `start` and
     `height`, at any arm; at least `top` if discs cover the line up to `top`. radius: radius of the next disc;
@@ -154,7 +153,7 @@ def covered_height(
 
 
 @compiled
-def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
+def _is_zero_free(w0: complex, radius: float, arms: SampledArmsOfInterval) -> bool:
     """Whether the disc about w0 contains no unknown eigenvalue of any arm of the interval, by the estimate of
     the module docstring."""
     value = determinant_from_propagators(w0, arms.largest_w, arms.propagators[0])
@@ -183,7 +182,7 @@ def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
 
 @compiled
 def _is_too_close_to_divide(v: complex, w: complex, error: float) -> bool:
-    """Whether v is too close to the known eigenvalue w, with `error`, for D(v)/(v - w)."""
+    """Whether v is too close to the known eigenvalue w for an accurate D(v)/(v - w). error: error of w."""
     return not abs(v - w) > max(
         NO_CROSSING_SETTINGS.min_known_distance_over_w * abs(v),
         NO_CROSSING_SETTINGS.min_known_distance_over_error * error,
@@ -191,9 +190,10 @@ def _is_too_close_to_divide(v: complex, w: complex, error: float) -> bool:
 
 
 @compiled
-def _has_small_D_change(node: LineNode, radius: float, arm: int, arms: ArmsOfInterval) -> bool:
+def _has_small_D_change(node: LineNode, radius: float, arm: int, arms: SampledArmsOfInterval) -> bool:
     """Whether |f(v, p)/f(w0, q) - 1| <= `NO_CROSSING_SETTINGS.max_D_change_ratio` at the points v of the
-    circle, for the arm number `arm`; False if a point is too close to a known eigenvalue."""
+    circle, for arm number `arm` of `arms`; False if a point is too close to a known eigenvalue. f: see the
+    module docstring. radius: radius of the circle about w0."""
     samples = ExponentSamples(arms.squared_exponent_coefficients[arm], arms.quadrature_weights)
     growth = 0.0
     if node.dominant_exponent_and_slope[0] == 0:

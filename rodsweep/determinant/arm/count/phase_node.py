@@ -151,8 +151,8 @@ def _dominant_exponent_and_slope(w: complex, rho: float, samples: ExponentSample
 
 @compiled
 def _valid_radius(rho: float, M: float, excess: float) -> float:
-    """Distance from w within which f changes by less than max_D_change_ratio |D|, if |f| <= M |D| at
-    radius rho."""
+    """Distance from w within which f changes by less than `excess` |D|, if |f| <= M |D| on the circle of
+    radius rho about w."""
     # As f'(w) = 0, Cauchy's estimate is |f(v) - f(w)| <= M |D| r^2/(rho (rho - r)), solved here for r.
     q = excess / M
     return rho * (math.sqrt(q * q + 4 * q) - q) / 2 if q > 0 else 0.0

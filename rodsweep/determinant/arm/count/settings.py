@@ -11,10 +11,12 @@ from ....model.compiled.kernel_constants import KernelConstants
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContourSettings(KernelConstants):
-    """Settings for the nodes on the contour of a count, and for the circles about nodes inside the hull."""
+    """Settings for the nodes on the contour of a count, and for the circles about nodes inside the hull. L =
+    D'/D; f: D without its dominant change, see `phase_node`."""
 
     max_tangent_phase_error: float = 1.5
-    """Largest allowed error of a tangent's phase, in radians; errors of two tangents sum to less than pi."""
+    """Largest allowed error of a tangent's phase, in radians; the errors of two tangents then sum to less
+    than pi."""
     circle_point_count: int = 8
     """Number of points of a circle at which |f| is evaluated; a multiple of 4."""
     circle_safety_factor: float = 1.5
@@ -22,13 +24,14 @@ class ContourSettings(KernelConstants):
     max_D_change_ratio: float = 0.9
     """The change of f within the valid radius of a node is at most this number times |D|."""
     rounding_safety_factor: float = 100.0
-    """|rounding error of D| <= this number times `rounding_error` of the value. Where |D| is below this
+    """|rounding error of D| <= this number times `DeterminantValue.rounding_error`. Where |D| is below this
     bound, the valid radius of a node is 0."""
     max_log_D_change_over_radius: float = 1.0
     """Radii of circles are in units of max_log_D_change_over_radius/|L| if this is below the length over
     which D changes, so that circles get smaller close to a zero of D."""
     max_divided_out_error_over_distance: float = 1e-3
-    """A known eigenvalue is divided out of D only if its error is below this fraction of the distance."""
+    """A known eigenvalue is divided out of D only if its error is below this fraction of its distance from
+    the line."""
     max_divided_out_line_distance_over_w: float = 1.0
     """Distance of a known eigenvalue w from the line, divided by max(|Im w|, |line|), below which the
     eigenvalue is divided out of D. D without farther eigenvalues would not follow the dominant wave."""
@@ -54,18 +57,19 @@ class ContourSettings(KernelConstants):
     max_circle_radius_over_w_scale: float = 48.0
     """Radius of the largest circle at any node, in units of the length over which D changes."""
     max_dominant_wave_radius_over_im_w: float = 0.8
-    """Circles up to this radius, in units of Im w, use `dominant_wave`, branched on the real axis."""
-    max_shortened_step_ratio: float = 0.9
-    """If the valid discs of two nodes do not overlap, the step is shortened at least by this factor."""
+    """Largest radius over Im w of circles that use the dominant wave; its branch points lie at Im w = 0."""
+    max_shortened_over_previous_step: float = 0.9
+    """If the valid discs of two nodes do not overlap, the step is at most this fraction of the last step."""
     safe_step_over_radius: float = 0.99
-    """A step within the valid radius of a node is at most this times that radius, because of rounding."""
+    """A step within the valid radius of a node is at most this fraction of the radius, because of
+    rounding."""
     field_ranges: ClassVar = {
         "max_tangent_phase_error": (0.0, math.pi / 2),
         "max_D_change_ratio": (0.0, 1.0),
         "max_dominant_wave_radius_over_im_w": (0.0, 1.0),
         "distance_over_sum_of_valid_radii": (0.0, 1.0),
         "max_valid_radius_growth": (0.0, 1.0),
-        "max_shortened_step_ratio": (0.0, 1.0),
+        "max_shortened_over_previous_step": (0.0, 1.0),
         "safe_step_over_radius": (0.0, 1.0),
     }
     """Exclusive bounds (lower, upper) of fields, by name, that the proofs require; see `KernelConstants`."""
@@ -83,14 +87,16 @@ CONTOUR_SETTINGS = ContourSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NoCrossingSettings(KernelConstants):
-    """Settings for the discs that cover a line, and for the arms at which D is evaluated."""
+    """Settings for the discs that cover a line, and for the arms at which D is evaluated. f: see
+    `no_crossing`."""
 
     arm_count: int = 5
     """Number of arms of an interval at which D is evaluated, including the middle arm and both ends."""
     line_distance_over_last_w: float = 0.05
-    """Distance of the line left of the last requested eigenvalue w, or of the axis if w grows, over |w|."""
+    """The line lies left of the last requested eigenvalue w, or left of the imaginary axis if Re w > 0, at
+    the distance of this number times |w|."""
     between_arms_safety_factor: float = 1.5
-    """Safety factor on the largest change of f at these arms, for arms between them."""
+    """Safety factor on the largest change of f at the evaluated arms, for all arms between them."""
     max_divided_out_distance_over_radius: float = 3.0
     """Distance of a known eigenvalue from a node, divided by the radius of the node's disc, below which the
     eigenvalue is divided out of D."""

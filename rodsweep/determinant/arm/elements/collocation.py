@@ -34,14 +34,14 @@ from .distinct_elements import distinct_element_indices
 from .elimination import fill_elimination_matrices
 from .minor_rates import (
     C3,
-    PADDED_LENGTH,
+    PROPAGATOR_LENGTH,
     G,
     fill_drag_rates,
-    integrate_s_m,
-    integrate_theta_m,
-    integrate_theta_s,
-    integrate_y_m,
-    integrate_y_theta,
+    integrate_minor_s_m,
+    integrate_minor_theta_m,
+    integrate_minor_theta_s,
+    integrate_minor_y_m,
+    integrate_minor_y_theta,
 )
 from .settings import ARM_ELEMENT_SETTINGS, MINOR_COUNT
 
@@ -57,7 +57,7 @@ class IntegrationMatrices(NamedTuple):
 def propagator_polynomials(
     F: Array, W: float, local: Array, lengths: Array, method: IntegrationMatrices
 ) -> Array:
-    """Coefficients of the propagators in powers of w/W, (n, elements, terms, PADDED_LENGTH); the array is
+    """Coefficients of the propagators in powers of w/W, (n, elements, terms, PROPAGATOR_LENGTH); the array is
     empty, terms = 0, if MAX_TERMS powers do not suffice. F: forces, (n,). W: bound of |w|. local:
     `LocalCoefficients`, (6, n, elements, STAGES). lengths: lengths of the elements, in L, (elements,)."""
     n, elements = local.shape[1:3]
@@ -77,7 +77,7 @@ def propagator_polynomials(
             for arm in range(n):
                 coefficients[arm, b, :, :, lane] = local[:, arm, equal_elements[0]] * length
     terms = np.zeros(
-        (n, batches * ARM_ELEMENT_SETTINGS.lane_count, ARM_ELEMENT_SETTINGS.max_terms, PADDED_LENGTH)
+        (n, batches * ARM_ELEMENT_SETTINGS.lane_count, ARM_ELEMENT_SETTINGS.max_terms, PROPAGATOR_LENGTH)
     )
     term_count = fill_propagator_polynomials(F, W, coefficients, method, terms)
     if term_count > ARM_ELEMENT_SETTINGS.max_terms:
@@ -94,7 +94,7 @@ def fill_propagator_polynomials(
 
     F: forces of n arms, (n,). coefficients: `LocalCoefficients` times the lengths of the elements, (n,
     batches, 6, STAGES, LANES). terms: coefficients of the powers of w/W, (n, batches * LANES, MAX_TERMS,
-    PADDED_LENGTH), all 0 at first.
+    PROPAGATOR_LENGTH), all 0 at first.
     """
     count = 1
     stages, width = ARM_ELEMENT_SETTINGS.stage_count, ARM_ELEMENT_SETTINGS.lane_axis_length
@@ -132,8 +132,8 @@ def _fill_polynomials_of_batch(
     """Fills `terms`, the coefficients of propagators, for one batch of elements; returns the number of terms
     needed.
 
-    terms: (LANES, MAX_TERMS, PADDED_LENGTH). load: (F, W). coefficients: (6, STAGES, WIDTH). eliminations:
-    matrices of `fill_elimination_matrices`, (STAGES, 1 + STAGES, WIDTH).
+    terms: (LANES, MAX_TERMS, PROPAGATOR_LENGTH). load: (F, W). coefficients: (6, STAGES, WIDTH).
+    eliminations: matrices of `fill_elimination_matrices`, (STAGES, 1 + STAGES, WIDTH).
     """
     F, W = load
     Q, weights = method
@@ -148,13 +148,13 @@ def _fill_polynomials_of_batch(
             starts[k, k * ARM_ELEMENT_SETTINGS.lane_count + lane] = 1.0
     for n in range(terms.shape[1]):
         fill_drag_rates(W, coefficients, values, rates)
-        integrate_s_m(F, Q, starts, coefficients, rates)
+        integrate_minor_s_m(F, Q, starts, coefficients, rates)
         # theta^s and theta^m depend on each other, and so do y^theta and y^m: one of each pair is eliminated.
-        integrate_theta_s(eliminations, starts, coefficients, values, rates)
-        integrate_theta_m(F, Q, starts, coefficients, rates)
-        integrate_y_m(Q, starts, coefficients, values, rates)  # without the part by y^theta
-        integrate_y_theta(F, eliminations, starts, coefficients, values, rates)
-        integrate_y_m(Q, starts, coefficients, values, rates)
+        integrate_minor_theta_s(eliminations, starts, coefficients, values, rates)
+        integrate_minor_theta_m(F, Q, starts, coefficients, rates)
+        integrate_minor_y_m(Q, starts, coefficients, values, rates)  # without the part by y^theta
+        integrate_minor_y_theta(F, eliminations, starts, coefficients, values, rates)
+        integrate_minor_y_m(Q, starts, coefficients, values, rates)
         _integrate_over_element(weights, starts, rates, end_terms)
         for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
             for row in range(MINOR_COUNT):

@@ -10,8 +10,8 @@ from ...exponents import TWO_MACHINE_EPSILONS
 
 @compiled
 def distinct_element_indices(local: Array, lengths: Array) -> NDArray[np.int64]:
-    """Number of each element, (elements,), increasing from 0. Neighbouring elements with equal coefficients
-    and lengths, as in a segment without taper, have the same number. local:
+    """Index of each element among the distinct elements, (elements,), not decreasing, from 0. Neighbouring
+    elements with equal coefficients and lengths, as in a segment without taper, have the same index. local:
     `LocalCoefficients` of n arms, (6, n, elements, STAGES). lengths: lengths of the elements, in L,
     (elements,)."""
     numbers = np.zeros(len(lengths), np.int64)

@@ -75,9 +75,9 @@ def _elements_per_length(W: float, squares: Array, tapers: Array, points: Array)
 
 @compiled
 def two_sum(a: Array, b: Array) -> tuple[Array, Array]:
-    """Returns (a + b rounded to doubles, rounding error of this sum), whose sum is a + b exactly (Knuth's
-    two-sum). a, b: of any shapes that broadcast. Near a thin tip the rounding of u alone would change the
-    radius, and with it D, by more than all products."""
+    """Returns (a + b rounded to doubles, rounding error of this sum); the two numbers add up to a + b exactly
+    (Knuth's two-sum). a, b: of any shapes that broadcast. Near a thin tip the rounding of u alone would
+    change the radius, and with it D, by more than all products."""
     total = a + b
     rounded_b = total - a
     return total, (a - (total - rounded_b)) + (b - rounded_b)
@@ -123,11 +123,11 @@ def _exceeds_max_exponent(
     lengths: Array, W: float, forces: Array, coefficients: Array, weights: Array
 ) -> NDArray[np.bool_]:
     """Mask of the elements, (elements,), over which an exponent of an arm exceeds `max_exponent` by more than
-    the factor `max_exponent_excess`: between the points of `element_edges` it may be much larger, as at a
-    thin tip. lengths: of the elements, (elements,). weights: of the mean over an element, (stages,). Other
-    arguments: as in `edges_with_coarse_elements_halved`."""
+    the factor `max_exponent_excess_factor`: between the points of `element_edges` an exponent may be much
+    larger, as at a thin tip. lengths: lengths of the elements, (elements,). weights: weights of the mean over
+    an element, (stages,). Other arguments: as in `edges_with_coarse_elements_halved`."""
     arms, elements, stages = coefficients.shape[1:]
-    limit = ARM_ELEMENT_SETTINGS.max_exponent_excess * ARM_ELEMENT_SETTINGS.max_exponent
+    limit = ARM_ELEMENT_SETTINGS.max_exponent_excess_factor * ARM_ELEMENT_SETTINGS.max_exponent
     is_long = np.zeros(elements, np.bool_)
     for arm in range(arms):
         for e in range(elements):

@@ -1,19 +1,19 @@
 """Propagators of elements at one z = w/W, from polynomials in z, and their products with minors.
 
 A propagator has the MINOR_COUNT^2 entries of its columns one after the other, and then zeros up to
-PADDED_LENGTH: loops over PADDED_LENGTH entries are whole vector instructions. Real and imaginary parts are
-separate rows, so that a sum over powers of z is a vector instruction over the entries. Arrays at real z have
-no imaginary parts.
+PROPAGATOR_LENGTH: loops over PROPAGATOR_LENGTH entries are whole vector instructions. Real and imaginary
+parts are separate rows, so that a sum over powers of z is a vector instruction over the entries. Arrays at
+real z have no imaginary parts.
 
 powers: result of `powers_and_derivatives`, (terms, 4). polynomial: coefficients of an element, (at least as
-many terms, PADDED_LENGTH). Minors: (2, MINOR_COUNT), real and imaginary parts.
+many terms, PROPAGATOR_LENGTH). Minors: (2, MINOR_COUNT), real and imaginary parts.
 """
 
 import numpy as np
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled, compiled_with_reordered_sums
-from .minor_rates import PADDED_LENGTH
+from .minor_rates import PROPAGATOR_LENGTH
 from .settings import ARM_ELEMENT_SETTINGS, MINOR_COUNT
 
 RE, IM, RE_SLOPE, IM_SLOPE = range(4)
@@ -48,16 +48,16 @@ def powers_and_derivatives(z: complex, terms: int) -> Array:
 
 @compiled_with_reordered_sums
 def fill_propagator_and_derivative(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes a propagator C and dC/dz into out, (4, PADDED_LENGTH); polynomial, powers: see module
+    """Writes a propagator C and dC/dz into out, (4, PROPAGATOR_LENGTH). polynomial, powers: see the module
     docstring."""
-    for k in range(PADDED_LENGTH):
+    for k in range(PROPAGATOR_LENGTH):
         out[RE, k] = polynomial[0, k]
         out[IM, k] = out[RE_SLOPE, k] = out[IM_SLOPE, k] = 0.0
     terms = len(powers)
     for n in range(1, terms - 1, 2):  # two terms at a time save passes over `out`
         a, b, c, d = powers[n, RE], powers[n, IM], powers[n, RE_SLOPE], powers[n, IM_SLOPE]
         p, q, r, s = powers[n + 1, RE], powers[n + 1, IM], powers[n + 1, RE_SLOPE], powers[n + 1, IM_SLOPE]
-        for k in range(PADDED_LENGTH):
+        for k in range(PROPAGATOR_LENGTH):
             x = polynomial[n, k]
             y = polynomial[n + 1, k]
             out[RE, k] += a * x + p * y
@@ -66,29 +66,29 @@ def fill_propagator_and_derivative(polynomial: Array, powers: Array, out: Array)
             out[IM_SLOPE, k] += d * x + s * y
     if terms % 2 == 0:
         for row in range(4):
-            for k in range(PADDED_LENGTH):
+            for k in range(PROPAGATOR_LENGTH):
                 out[row, k] += powers[terms - 1, row] * polynomial[terms - 1, k]
 
 
 @compiled_with_reordered_sums
 def fill_propagator_value(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes a propagator C, without dC/dz, into out, (2, PADDED_LENGTH). polynomial, powers: see the module
-    docstring."""
+    """Writes a propagator C, without dC/dz, into out, (2, PROPAGATOR_LENGTH). polynomial, powers: see the
+    module docstring."""
     _fill_power_sums(polynomial, powers, (RE, IM), out)
 
 
 @compiled_with_reordered_sums
 def fill_real_propagator_and_derivative(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes a propagator C and dC/dz at real z into out, (2, PADDED_LENGTH). polynomial, powers: see the
-    module."""
+    """Writes a propagator C and dC/dz at real z into out, (2, PROPAGATOR_LENGTH). polynomial, powers: see the
+    module docstring."""
     _fill_power_sums(polynomial, powers, (RE, RE_SLOPE), out)
 
 
 @compiled_with_reordered_sums
 def _fill_power_sums(polynomial: Array, powers: Array, rows: tuple[int, int], out: Array) -> None:
-    """Writes sum_n powers[n, row] polynomial[n], for each of two `rows`, into out, (2, PADDED_LENGTH)."""
+    """Writes sum_n powers[n, row] polynomial[n], for each of two `rows`, into out, (2, PROPAGATOR_LENGTH)."""
     i, j = rows
-    for k in range(PADDED_LENGTH):
+    for k in range(PROPAGATOR_LENGTH):
         out[0, k] = powers[0, i] * polynomial[0, k]
         out[1, k] = powers[0, j] * polynomial[0, k]
     terms = len(powers)
@@ -96,7 +96,7 @@ def _fill_power_sums(polynomial: Array, powers: Array, rows: tuple[int, int], ou
     for n in range(1, terms - 3, 4):  # four terms at a time save passes over `out`
         a, b, c, d = (powers[n, i], powers[n + 1, i], powers[n + 2, i], powers[n + 3, i])
         p, q, r, s = (powers[n, j], powers[n + 1, j], powers[n + 2, j], powers[n + 3, j])
-        for k in range(PADDED_LENGTH):
+        for k in range(PROPAGATOR_LENGTH):
             x = polynomial[n, k]
             y = polynomial[n + 1, k]
             z = polynomial[n + 2, k]
@@ -107,22 +107,22 @@ def _fill_power_sums(polynomial: Array, powers: Array, rows: tuple[int, int], ou
     for n in range(count, terms):
         a = powers[n, i]
         p = powers[n, j]
-        for k in range(PADDED_LENGTH):
+        for k in range(PROPAGATOR_LENGTH):
             out[0, k] += a * polynomial[n, k]
             out[1, k] += p * polynomial[n, k]
 
 
 @compiled_with_reordered_sums
 def fill_real_propagator_value(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes a propagator C at real z, without dC/dz, into out, (PADDED_LENGTH,). polynomial, powers: see
-    module."""
-    for k in range(PADDED_LENGTH):
+    """Writes a propagator C at real z, without dC/dz, into out, (PROPAGATOR_LENGTH,). polynomial, powers: see
+    the module docstring."""
+    for k in range(PROPAGATOR_LENGTH):
         out[k] = polynomial[0, k]
     terms = len(powers)
     count = 1
     for n in range(1, terms - 3, 4):  # as in `_fill_power_sums`
         a, b, c, d = (powers[n, RE], powers[n + 1, RE], powers[n + 2, RE], powers[n + 3, RE])
-        for k in range(PADDED_LENGTH):
+        for k in range(PROPAGATOR_LENGTH):
             out[k] += (
                 a * polynomial[n, k]
                 + b * polynomial[n + 1, k]
@@ -131,13 +131,14 @@ def fill_real_propagator_value(polynomial: Array, powers: Array, out: Array) -> 
             )
         count = n + 4
     for n in range(count, terms):
-        for k in range(PADDED_LENGTH):
+        for k in range(PROPAGATOR_LENGTH):
             out[k] += powers[n, RE] * polynomial[n, k]
 
 
 @compiled_with_reordered_sums
 def apply_propagator(C: Array, x: Array, out: Array) -> None:
-    """out = C x for a propagator C, (2 or more, PADDED_LENGTH), and minors x and out, (2, MINOR_COUNT)."""
+    """out = C x for a propagator C, (2 or more, PROPAGATOR_LENGTH), and minors x and out, (2,
+    MINOR_COUNT)."""
     for i in range(MINOR_COUNT):
         out[0, i] = out[1, i] = 0.0
     for j in range(MINOR_COUNT):
@@ -150,7 +151,8 @@ def apply_propagator(C: Array, x: Array, out: Array) -> None:
 
 @compiled_with_reordered_sums
 def apply_transposed_propagator(C: Array, x: Array, out: Array) -> None:
-    """out = C^T x for a propagator C, (2 or more, PADDED_LENGTH), and vectors x and out, (2, MINOR_COUNT)."""
+    """out = C^T x for a propagator C, (2 or more, PROPAGATOR_LENGTH), and vectors x and out, (2,
+    MINOR_COUNT)."""
     for j in range(MINOR_COUNT):
         real = 0.0
         imaginary = 0.0
@@ -164,7 +166,8 @@ def apply_transposed_propagator(C: Array, x: Array, out: Array) -> None:
 
 @compiled_with_reordered_sums
 def apply_transposed_real_propagator(C: Array, x: Array, out: Array) -> None:
-    """out = C^T x for a real propagator C, (PADDED_LENGTH,), and real vectors x and out, (MINOR_COUNT,)."""
+    """out = C^T x for a real propagator C, (PROPAGATOR_LENGTH,), and real vectors x and out,
+    (MINOR_COUNT,)."""
     for j in range(MINOR_COUNT):
         total = 0.0
         for i in range(MINOR_COUNT):
@@ -174,7 +177,7 @@ def apply_transposed_real_propagator(C: Array, x: Array, out: Array) -> None:
 
 @compiled_with_reordered_sums
 def propagate_tangent(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
-    """out = C t + change x for propagators C, change, (2 or more, PADDED_LENGTH), minors t, x, out, (2,
+    """out = C t + change x for propagators C, change, (2 or more, PROPAGATOR_LENGTH), minors t, x, out, (2,
     MINOR_COUNT)."""
     for i in range(MINOR_COUNT):
         out[0, i] = out[1, i] = 0.0
@@ -191,7 +194,7 @@ def propagate_tangent(C: Array, t: Array, change: Array, x: Array, out: Array) -
 
 @compiled_with_reordered_sums
 def apply_real_propagator(C: Array, x: Array, out: Array) -> None:
-    """out = C x for a real propagator C, (PADDED_LENGTH,), and real minors x and out, (MINOR_COUNT,)."""
+    """out = C x for a real propagator C, (PROPAGATOR_LENGTH,), and real minors x and out, (MINOR_COUNT,)."""
     for i in range(MINOR_COUNT):
         out[i] = 0.0
     for j in range(MINOR_COUNT):
@@ -202,7 +205,7 @@ def apply_real_propagator(C: Array, x: Array, out: Array) -> None:
 
 @compiled_with_reordered_sums
 def propagate_real_tangent(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
-    """out = C t + change x for real propagators C, change, (PADDED_LENGTH,), and minors t, x, out,
+    """out = C t + change x for real propagators C, change, (PROPAGATOR_LENGTH,), and minors t, x, out,
     (MINOR_COUNT,)."""
     for i in range(MINOR_COUNT):
         out[i] = 0.0

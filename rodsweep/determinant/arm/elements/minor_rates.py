@@ -18,7 +18,7 @@ from .settings import ARM_ELEMENT_SETTINGS, MINOR_COUNT
 
 SM, TS, TM, YT, YM = range(MINOR_COUNT)
 """Row indices of the minors s^m, theta^s, theta^m, y^theta and y^m."""
-PADDED_LENGTH = 28
+PROPAGATOR_LENGTH = 28
 """Length of a stored propagator, a matrix that multiplies the minors: its MINOR_COUNT^2 entries, then zeros
 up to a multiple of 4, for vector instructions."""
 NU, C2, C3, GAMMA2, GAMMA3, G = range(6)
@@ -40,10 +40,10 @@ def fill_drag_rates(W: float, coefficients: Array, values: Array, rates: Array) 
 
 
 @compiled_with_reordered_sums
-def integrate_s_m(F: float, Q: Array, starts: Array, coefficients: Array, rates: Array) -> None:
+def integrate_minor_s_m(F: float, Q: Array, starts: Array, coefficients: Array, rates: Array) -> None:
     """Integrates the rates of s^m, and adds the terms with s^m to the rates of theta^s and y^m. The
-    elimination of theta^m leaves out its initial value, so the share of theta^s is added here. rates:
-    (MINOR_COUNT, STAGES, WIDTH). Other arguments: see the module docstring."""
+    elimination of theta^m leaves out the initial value of theta^m, so its contribution to the rates of
+    theta^s is added here. rates: (MINOR_COUNT, STAGES, WIDTH). Other arguments: see the module docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stage_count):
         for c in range(ARM_ELEMENT_SETTINGS.lane_axis_length):
             value = starts[SM, c]
@@ -54,7 +54,7 @@ def integrate_s_m(F: float, Q: Array, starts: Array, coefficients: Array, rates:
 
 
 @compiled_with_reordered_sums
-def integrate_theta_s(
+def integrate_minor_theta_s(
     eliminations: Array, starts: Array, coefficients: Array, values: Array, rates: Array
 ) -> None:
     """Integrates the rates of theta^s after the elimination of theta^m, and writes the rates -g theta^s of
@@ -69,10 +69,10 @@ def integrate_theta_s(
 
 
 @compiled_with_reordered_sums
-def integrate_theta_m(F: float, Q: Array, starts: Array, coefficients: Array, rates: Array) -> None:
+def integrate_minor_theta_m(F: float, Q: Array, starts: Array, coefficients: Array, rates: Array) -> None:
     """Integrates the rates of theta^m, and adds the terms with theta^m to the rates of theta^s and y^m; the
-    rates of theta^s already contain its initial value (`integrate_s_m`). rates: (MINOR_COUNT, STAGES, WIDTH).
-    Other arguments: see the module docstring."""
+    rates of theta^s already contain the initial value of theta^m (`integrate_minor_s_m`). rates:
+    (MINOR_COUNT, STAGES, WIDTH). Other arguments: see the module docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stage_count):
         for c in range(ARM_ELEMENT_SETTINGS.lane_axis_length):
             change = 0.0
@@ -83,7 +83,7 @@ def integrate_theta_m(F: float, Q: Array, starts: Array, coefficients: Array, ra
 
 
 @compiled_with_reordered_sums
-def integrate_y_m(Q: Array, starts: Array, coefficients: Array, values: Array, rates: Array) -> None:
+def integrate_minor_y_m(Q: Array, starts: Array, coefficients: Array, values: Array, rates: Array) -> None:
     """Integrates the rates of y^m, and writes the rates c3 y^m - c2 theta^s of y^theta. values,
     rates: (MINOR_COUNT, STAGES, WIDTH). Other arguments: see the module docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stage_count):
@@ -96,7 +96,7 @@ def integrate_y_m(Q: Array, starts: Array, coefficients: Array, values: Array, r
 
 
 @compiled_with_reordered_sums
-def integrate_y_theta(
+def integrate_minor_y_theta(
     F: float, eliminations: Array, starts: Array, coefficients: Array, values: Array, rates: Array
 ) -> None:
     """Integrates the rates of y^theta after the elimination of y^m, and adds the term -F g y^theta to the

@@ -11,8 +11,8 @@ from .settings import MINOR_COUNT
 
 @compiled_with_reordered_sums
 def modulus_sum_of_form_at_real_w(a: Array, C: Array, x: Array) -> float:
-    """The sum of |a_i| |C_ij| |x_j| for a real propagator C, (PADDED_LENGTH,), and real vectors a and x,
-    (MINOR_COUNT,)."""
+    """The sum of |a_i| |C_ij| |x_j| over i and j. C: real propagator, (PROPAGATOR_LENGTH,). a, x: real
+    vectors, (MINOR_COUNT,)."""
     total = 0.0
     for j in range(MINOR_COUNT):
         column = 0.0
@@ -24,8 +24,8 @@ def modulus_sum_of_form_at_real_w(a: Array, C: Array, x: Array) -> float:
 
 @compiled_with_reordered_sums
 def modulus_sum_of_form(a: Array, C: Array, x: Array) -> float:
-    """The sum of |a_i| |C_ij| |x_j| for a propagator C, (2 or more, PADDED_LENGTH), and vectors a and x, (2,
-    MINOR_COUNT). |real| + |imaginary part| replaces each modulus: up to 2 sqrt(2) times too large."""
+    """The sum of |a_i| |C_ij| |x_j| for a propagator C, (2 or more, PROPAGATOR_LENGTH), and vectors a and x,
+    (2, MINOR_COUNT). |real| + |imaginary part| replaces each modulus: up to 2 sqrt(2) times too large."""
     total = 0.0
     for j in range(MINOR_COUNT):
         column = 0.0
@@ -38,9 +38,9 @@ def modulus_sum_of_form(a: Array, C: Array, x: Array) -> float:
 
 @compiled_with_reordered_sums
 def modulus_sum_of_form_from_sizes(a: Array, sizes: Array, t: float, x: Array) -> float:
-    """The sum of |a_i| (sizes_0 + t sizes_1)_ij |x_j| for sizes of propagator entries, (2, PADDED_LENGTH),
-    and vectors a and x, (2, MINOR_COUNT). |real part| + |imaginary part| replaces the moduli of a_i and
-    x_j."""
+    """The sum of |a_i| (sizes_0 + t sizes_1)_ij |x_j| for sizes of propagator entries, (2,
+    PROPAGATOR_LENGTH), and vectors a and x, (2, MINOR_COUNT). |real part| + |imaginary part| replaces the
+    moduli of a_i and x_j."""
     total = 0.0
     for j in range(MINOR_COUNT):
         column = 0.0
@@ -54,8 +54,8 @@ def modulus_sum_of_form_from_sizes(a: Array, sizes: Array, t: float, x: Array) -
 @compiled
 def minor_sm_modulus_sum(C: Array, x: Array) -> float:
     """Sum of the moduli of all terms of C x that add up to the minor s^m at the end of an element. C:
-    propagator, (2 or more, PADDED_LENGTH). x: minors, (2, MINOR_COUNT). Near a root of D the terms cancel,
-    and the rounding error of D is relative to their moduli, not to s^m."""
+    propagator, (2 or more, PROPAGATOR_LENGTH). x: minors, (2, MINOR_COUNT). Near a root of D the terms
+    cancel, and the rounding error of D is relative to their moduli, not to s^m."""
     total = 0.0
     for j in range(MINOR_COUNT):
         entry = complex(C[RE, MINOR_COUNT * j + SM], C[IM, MINOR_COUNT * j + SM])
@@ -65,7 +65,8 @@ def minor_sm_modulus_sum(C: Array, x: Array) -> float:
 
 @compiled_with_reordered_sums
 def real_minor_sm_modulus_sum(C: Array, x: Array) -> float:
-    """`minor_sm_modulus_sum` for a real propagator C, (PADDED_LENGTH,), and real minors x, (MINOR_COUNT,)."""
+    """`minor_sm_modulus_sum` for a real propagator C, (PROPAGATOR_LENGTH,), and real minors x,
+    (MINOR_COUNT,)."""
     total = 0.0
     for j in range(MINOR_COUNT):
         total += abs(C[MINOR_COUNT * j + SM] * x[j])

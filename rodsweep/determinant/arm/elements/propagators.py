@@ -39,11 +39,12 @@ def _collocation_method() -> IntegrationMatrices:
 
 
 def element_propagators(F: Sequence[float], coefficients: Array, lengths: Array, W: float) -> Array:
-    """The propagators C of the elements of n arms in powers of w/W, (n, elements, terms, PADDED_LENGTH), C
-    column by column.
+    """The propagators C of the elements of n arms in powers of w/W, (n, elements, terms, PROPAGATOR_LENGTH),
+    C column by column.
 
-    F: forces, (n,). coefficients: `LocalCoefficients` at the Gauss points, (6, n, elements, stages).
-    lengths: of elements, in L, (elements,). Raises FloatingPointError if `max_terms` powers do not resolve C.
+    F: forces, (n,). coefficients: `LocalCoefficients` at the Gauss points, (6, n, elements, stages). lengths:
+    lengths of the elements, in L, (elements,). Raises FloatingPointError if `max_terms` powers do not resolve
+    C.
     """
     terms = propagator_polynomials(np.array(F, float), W, coefficients, lengths, _collocation_method())
     if not terms.size:

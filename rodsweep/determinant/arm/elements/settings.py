@@ -17,27 +17,29 @@ class ArmElementSettings(KernelConstants):
     max_exponent: float = 3.2
     """Largest |q1 +- q2| h of an element of length h; these are the exponents of the minors. Twelve Gauss
     points integrate exp(3.2) to 1e-19, with rounding errors like those of elements half as long."""
-    max_exponent_excess: float = 1.1
+    max_exponent_excess_factor: float = 1.1
     """An element is halved if its largest exponent, integrated at its Gauss points, exceeds `max_exponent` by
     more than this factor: `max_terms` powers of w and twelve Gauss points suffice up to about 3.7."""
     max_length_over_apex_distance: float = 0.5
     """Largest length of an element divided by the distance from the cone's apex, where stiffnesses vanish."""
     max_coefficient_tail: float = 1e-9
     """An element is halved if one of the last two Legendre coefficients of nu, c2, ... over the element
-    exceeds this fraction of the largest value. The error of a Gauss method is about its square."""
+    exceeds this fraction of the largest value. The error of a Gauss method is about this fraction squared."""
     max_halvings: int = 28
-    """Maximum number of halvings of an element, down to 4e-9 of the first length. A factor that grows a
-    million times between two rows has its pole a millionth of their distance away."""
+    """Maximum number of halvings of an element, down to 4e-9 of the first length. If a factor of a profile
+    grows a million times between two rows, a compliance has a pole at only a millionth of the distance
+    between these rows."""
     min_W: float = 16.0
     """Smallest W, the bound of |w| up to which elements are valid; for smaller |w| the load and the taper,
-    not w, determine the length of elements. A mean of c2 gamma2 + c3 gamma3 above 1 divides it."""
+    not w, determine the length of elements. If the mean of c2 gamma2 + c3 gamma3 along the arm exceeds 1,
+    this number is divided by the mean."""
     W_over_w: float = 1.1
     """New elements are valid up to W = W_over_w |w|: the reserve is for slightly larger |w|."""
     max_reused_W_over_w: float = 1e3
     """Existing elements are reused at w if their W is at most this number times |w|. Making new elements
     costs as much as thirty evaluations of D on twice as many elements."""
     max_reused_W_over_w_in_comparisons: float = 1.5
-    """Value of `max_reused_W_over_w` for comparisons of D on different elements; near 1: the elements
+    """Value of `max_reused_W_over_w` for comparisons of D on different elements; near 1, so that the elements
     differ."""
     max_elements: int = 16000
     """Maximum number of elements of an arm. An arm that needs more elements is not resolved."""

@@ -18,7 +18,12 @@ import numpy as np
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled, compiled_with_reordered_sums
-from .trial_points import AVERAGED_WEIGHT_SETTINGS, TrialPoints, interpolate_at_position, trial_points
+from .trial_points import (
+    AVERAGED_WEIGHT_SETTINGS,
+    TrialPoints,
+    interpolate_at_position,
+    trial_points_for_half_width,
+)
 
 
 class TrialWeight(NamedTuple):
@@ -40,7 +45,7 @@ def regions_from_averaged_weights_of_arms(F: Array, u: Array, coefficients: Arra
     regions = np.full((len(F), AVERAGED_WEIGHT_SETTINGS.trial_region_count, 2), math.inf)
     for arm in range(len(F)):
         if (coefficients[1, arm] > 0).all() and (coefficients[5, arm] > 0).all():
-            # The smallest region of several arms need not have the smallest region of any of them.
+            # The best trial for several arms together need not be the best trial for any of them.
             regions[arm] = regions_from_averaged_weights(
                 u, np.ascontiguousarray(coefficients[:, arm]), F[arm], len(F) == 1
             )
@@ -51,8 +56,8 @@ def regions_from_averaged_weights_of_arms(F: Array, u: Array, coefficients: Arra
 def regions_from_averaged_weights(u: Array, coefficients: Array, F: float, only_smallest: bool) -> Array:
     """Constants (a, c) of the region of each trial weight, (trials, 2); inf if a trial gives no bound. u:
     points of an arm from clamp to tip, (points,), two at a jump. coefficients: `LocalCoefficients` at the
-    points, (6, points), with c2 > 0 and g > 0. F: force. only_smallest: whether a trial may end, with inf, as
-    soon as its a reaches the smallest a of a region with c = 0."""
+    points, (6, points), with c2 > 0 and g > 0. F: force. only_smallest: whether a trial may end with inf as
+    soon as a reaches the smallest a so far of a region with c = 0."""
     regions = np.full((AVERAGED_WEIGHT_SETTINGS.trial_region_count, 2), math.inf)
     _, c2, c3, gamma2, gamma3, _ = coefficients
     loads = abs(F) * np.sqrt(c2 * c3 * gamma3 / gamma2)
@@ -65,7 +70,7 @@ def regions_from_averaged_weights(u: Array, coefficients: Array, F: float, only_
     max_a2 = math.inf
     limiting_source = 0
     for h in AVERAGED_WEIGHT_SETTINGS.window_half_widths:
-        points = trial_points(u, coefficients, loads, F, h)
+        points = trial_points_for_half_width(u, coefficients, loads, F, h)
         for m in range(len(factors)):
             weight = _trial_weight(points, factors[m], log_weight[m])
             trial = (F, factors[m], h, max_a2)
@@ -80,8 +85,8 @@ def regions_from_averaged_weights(u: Array, coefficients: Array, F: float, only_
 
 @compiled
 def _trial_weight(points: TrialPoints, factor: float, log_t_of_arm: Array) -> TrialWeight:
-    """Logarithms of the weight t at the points of one half-width. factor: f. log_t_of_arm: log t at the
-    points of the arm."""
+    """The `TrialWeight` of the weight t at the points of one half-width. factor: f, the factor of the load in
+    t. log_t_of_arm: log t at the points of the arm."""
     u = points.u
     log_weight = np.empty(len(u))
     integral = np.zeros(len(u))
@@ -97,7 +102,7 @@ def _trial_weight(points: TrialPoints, factor: float, log_t_of_arm: Array) -> Tr
 
 @compiled_with_reordered_sums
 def _weight_before_averaging(points: TrialPoints, i: int, factor: float) -> float:
-    """The weight t = g/(nu + f l) at point number i. factor: f."""
+    """The weight t = g/(nu + f l) at point number i. factor: f. l: `points.load_terms`."""
     return points.coefficients[5, i] / (points.coefficients[0, i] + factor * points.load_terms[i])
 
 
@@ -165,7 +170,8 @@ def _weight_and_squared_norms(
     points: TrialPoints, weight: TrialWeight, i: int, trial: tuple[float, float, float, float]
 ) -> tuple[float, float, float]:
     """Returns (alpha, clamp, drag) at point number i: the averaged weight, and a^2 of the two regions of
-    `_write_regions_of_trial`, whose arguments these are."""
+    `_write_regions_of_trial`, bounded by theta(0) = 0 and by the rotational drag. Other arguments: as in
+    `_write_regions_of_trial`."""
     nu, c2, c3, gamma2, gamma3, g = points.coefficients[:, i]
     F, factor, h, _ = trial
     alpha, slope = _averaged_weight_and_log_slope(points, weight, i, h)
@@ -196,7 +202,7 @@ def _averaged_weight_and_log_slope(
 
 @compiled
 def squared_block_norm(A2: float, B2: float, e: float, drag: float) -> float:
-    """Squared norm of the matrix [[A, B], [e/sqrt(drag), 0]]; A2 = A^2, B2 = B^2; inf if drag = 0 != e."""
+    """Squared 2-norm of [[A, B], [e/sqrt(drag), 0]]; inf if drag = 0 and e is not 0. A2 = A^2, B2 = B^2."""
     if e == 0:
         return A2 + B2
     if drag == 0:

@@ -17,7 +17,7 @@ n^2 N^2 with 4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du. Both give,
 
 a convex region bounded by a parabola. Several weights alpha are tried, and the smallest region is used. With
 alpha = g/(nu + |F| sqrt(c2 c3 gamma3/gamma2)) the region of a uniform rod equals the region of
-`rodsweep.determinant.certificate.eigenvalue_box`.
+`rodsweep.determinant.certificate.box_of_all_eigenvalues`.
 
 Extremes along the arm are evaluated at points between the breaks, and `HULL_SETTINGS.enlargement_fraction`
 allows for the arm between these points."""
@@ -38,7 +38,7 @@ from ...parameter_path import ParameterPath
 from .averaged_weight import regions_from_averaged_weights_of_arms
 from .region import HULL_SETTINGS, UNBOUNDED_HULL, EigenvalueHull, PathHulls
 from .weights import (
-    four_c_squared_by_clamp,
+    four_c_squared_from_clamp,
     smallest_squared_norm,
     squared_norms_of_varying_weights,
     trial_constant_weights,
@@ -92,7 +92,7 @@ class HullSamples(NamedTuple):
 def _hull_samples(rods: Sequence[Rod]) -> HullSamples:
     """The `HullSamples` of arms of one material."""
     material = rods[0].material
-    lengths, u, end_to_end_u = _chebyshev_points_of_material(material)
+    lengths, u, end_to_end_u = _lengths_and_chebyshev_points(material)
     F = np.array([rod.F for rod in rods], float)
     coefficients = local_coefficient_array(rods, u)
     averaged_regions: Array = np.empty((len(rods), 0, 2))
@@ -104,10 +104,11 @@ def _hull_samples(rods: Sequence[Rod]) -> HullSamples:
 
 
 @lru_cache(maxsize=HULL_SETTINGS.max_cached_materials)
-def _chebyshev_points_of_material(material: RodMaterial) -> tuple[Array, Array, Array]:
-    """Returns (lengths, u, end_to_end_u): lengths of the intervals between breaks of the profile, (pieces,);
-    their Chebyshev points u, (pieces, points); the same points with intervals that follow each other without
-    the short distances of the first and last points from the breaks, (pieces * points,)."""
+def _lengths_and_chebyshev_points(material: RodMaterial) -> tuple[Array, Array, Array]:
+    """Returns (lengths, u, end_to_end_u). lengths: distances of the first from the last Chebyshev point of
+    each interval between breaks of the profile, (pieces,). u: the Chebyshev points, (pieces, points).
+    end_to_end_u: Chebyshev points of intervals with these lengths that follow each other without gaps,
+    (pieces * points,)."""
     x = (1 - 2 * HULL_SETTINGS.end_point_distance_over_interval) * _chebyshev_matrices().points
     lengths = np.diff(material.breaks)
     u = material.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
@@ -128,8 +129,8 @@ def _slice_of_samples(arms: HullSamples, arm_indices: slice) -> HullSamples:
 
 class ChebyshevMatrices(NamedTuple):
     """Chebyshev points in [-1, 1], (points,), and the matrices that differentiate and integrate an
-    interpolant. differentiation_matrix, integration_matrix: from values at the points to values at the
-    points, (points, points). Integrals start at -1."""
+    interpolant. differentiation_matrix, integration_matrix: matrices from values at the points to
+    derivatives, and to integrals from -1, at the points, (points, points)."""
 
     points: Array
     differentiation_matrix: Array
@@ -185,7 +186,7 @@ def _smallest_common_region(
     # Where c2 = 0, g equals nu: only alpha = 1 keeps (g - alpha nu)^2/c2 finite.
     if not (c2 > 0).all():
         alphas = np.ones(1)
-    integrals = four_c_squared_by_clamp(alphas, F, lengths, coefficients, chebyshev.integration_matrix)
+    integrals = four_c_squared_from_clamp(alphas, F, lengths, coefficients, chebyshev.integration_matrix)
     for k in range(len(alphas)):
         c = (1 + HULL_SETTINGS.enlargement_fraction) * sqrt(integrals[k]) / 2
         smallest = _smaller_region(smallest, (sqrt(alphas[k] * max_weighted_force), c), max_c)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from ....arrays import Array
 from ....model.compiled.compilation import compiled
 from ....model.compiled.kernel_constants import KernelConstants
-from ...certificate.eigenvalue_box import BOX_SETTINGS
+from ...certificate.box_of_all_eigenvalues import BOX_SETTINGS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,10 +49,11 @@ class EigenvalueHull(NamedTuple):
     a: float
     """Largest growth rate divided by n, without damping."""
     c: float
-    """1 minus the damping rate divided by n^2."""
+    """c = 1 - (damping rate)/n^2."""
 
     def box(self, depth: float = 0.0) -> tuple[float, float]:
-        """Bounds (max Re w, max |Im w|) of the hull with Re w >= -depth, depth >= 0; inf if unbounded."""
+        """Bounds (max Re w, max |Im w|), in 1/tau2, of the part Re w >= -depth of the hull, depth >= 0; inf
+        if unbounded."""
         a = self.a
         b = 1 - self.c
         if not isfinite(a):
@@ -76,8 +77,8 @@ def hull_distance_and_normal(w: complex, a: float, c: float) -> tuple[float, com
     largest_distance = -inf
     normal = 1 + 0j
     for k in range(HULL_SETTINGS.supporting_line_count):
-        # Close to the imaginary axis the support function grows without bound.
-        # Slopes of the normals from 0 to infinity, as many below 1 as above.
+        # Slopes T of the normals from 0 up, as many below 1 as above. For steep normals the support function
+        # grows without bound.
         T = (k / (HULL_SETTINGS.supporting_line_count - k)) ** 2
         if not c * T < b:
             break

@@ -19,12 +19,12 @@ class AveragedWeightSettings(KernelConstants):
 
     load_term_factors: tuple[float, ...] = (1.0, 0.5, 0.0)
     """Values of f in l = f |F| sqrt(c2 c3 gamma3/gamma2), the term with the load in the trial weight t. f = 1
-    is mostly the best and comes first: its region ends the trials of others early."""
+    is mostly the best and comes first: its region then ends the other trials early."""
     window_half_widths: tuple[float, ...] = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
     """Values of the half-width h of the window, in L."""
     max_distance_across_jump: float = 1e-6
     """Two successive points closer than this distance, in L, lie on the two sides of a jump."""
-    added_point_distance: float = 1e-12
+    distance_between_added_points: float = 1e-12
     """Distance, in L, between the points added on both sides of u at which the slope of alpha jumps."""
 
     @property
@@ -45,10 +45,10 @@ class GridPositions(NamedTuple):
 
 
 class TrialPoints(NamedTuple):
-    """Points of an arm at which the weights of one half-width h are evaluated. u: from clamp to tip, (n,).
-    arm_point_indices: index of each point among the points of the arm, -1 for an added point, (n,).
-    coefficients: `LocalCoefficients`, (6, n). load_terms: |F| sqrt(c2 c3 gamma3/gamma2), (n,). window_starts,
-    window_ends: positions of u - h and of u + h in u."""
+    """Points of an arm at which the weights of one half-width h are evaluated. u: positions of the points
+    from clamp to tip, (n,). arm_point_indices: index of each point among the points of the arm, -1 for an
+    added point, (n,). coefficients: `LocalCoefficients`, (6, n). load_terms: |F| sqrt(c2 c3 gamma3/gamma2),
+    (n,). window_starts, window_ends: positions of u - h and of u + h in u."""
 
     u: Array
     arm_point_indices: NDArray[np.int64]
@@ -59,10 +59,12 @@ class TrialPoints(NamedTuple):
 
 
 @compiled
-def trial_points(u: Array, coefficients: Array, loads: Array, F: float, h: float) -> TrialPoints:
-    """The points for the half-width h of an arm under the force F with the points u, (points,), where the arm
-    has the `LocalCoefficients` `coefficients`, (6, points), and `loads`, the terms of the load as in
-    `TrialPoints`, (points,)."""
+def trial_points_for_half_width(
+    u: Array, coefficients: Array, loads: Array, F: float, h: float
+) -> TrialPoints:
+    """The `TrialPoints` of an arm for the half-width h. u: points of the arm, (points,). coefficients:
+    `LocalCoefficients` at these points, (6, points). loads: `load_terms` of `TrialPoints` at these points,
+    (points,). F: force."""
     points, sources = _with_points_where_window_ends_jump(u, h)
     coefficients_at_points = np.empty((6, len(points)))
     loads_at_points = np.empty(len(points))
@@ -86,8 +88,9 @@ def trial_points(u: Array, coefficients: Array, loads: Array, F: float, h: float
 
 @compiled
 def _with_points_where_window_ends_jump(u: Array, h: float) -> tuple[Array, NDArray[np.int64]]:
-    """Returns (points, sources): the points u of an arm, (points,), and two more near each u at the distance
-    h from a jump, sorted; index of each point in u, -1 for the others."""
+    """Returns (points, sources). points: the points u of an arm, (points,), and one point on either side of
+    each place at the distance h from a jump, sorted. sources: index of each point in u, -1 for an added
+    point."""
     # Each jump adds at most four points: two window ends, with a point on either side of each.
     added: Array = np.empty(4 * len(u))
     count = 0
@@ -95,8 +98,8 @@ def _with_points_where_window_ends_jump(u: Array, h: float) -> tuple[Array, NDAr
         if u[i + 1] - u[i] < AVERAGED_WEIGHT_SETTINGS.max_distance_across_jump:
             for window_end in (-h, h):
                 for offset in (
-                    -AVERAGED_WEIGHT_SETTINGS.added_point_distance,
-                    AVERAGED_WEIGHT_SETTINGS.added_point_distance,
+                    -AVERAGED_WEIGHT_SETTINGS.distance_between_added_points,
+                    AVERAGED_WEIGHT_SETTINGS.distance_between_added_points,
                 ):
                     position = (u[i + 1] + u[i]) / 2 + window_end + offset
                     if u[0] < position < u[-1]:

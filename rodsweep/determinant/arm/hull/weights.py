@@ -84,7 +84,7 @@ def squared_norms_of_varying_weights(
 
 
 @compiled
-def four_c_squared_by_clamp(
+def four_c_squared_from_clamp(
     alphas: Array, F: Array, lengths: Array, coefficients: Array, integral: Array
 ) -> Array:
     """4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du, largest of all arms, for each constant alpha,

@@ -1,8 +1,8 @@
 """Figures over the quantities of an arm, in the units typed by the user: curves against one quantity, maps
 over two quantities.
 
-Each point of the file is the centre of a cell of a map. Cells are hatched where the model does not apply, and
-grey where the rod model does not apply.
+Each point of the file is the centre of a cell of a map. Cells are hatched where the model is doubtful or does
+not apply, and grey where an arm corresponds to no rod.
 """
 
 from collections.abc import Sequence
@@ -17,11 +17,11 @@ from ....config.arm.status import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, NO_WALL,
 from ....model.arm.drag import DRAG_ESTIMATE_NAMES
 from ....model.arm.neglected import Validity
 from ....results.file.view import ResultView
-from ...summary.arm.arm_texts import quantity_words
+from ...summary.arm.arm_texts import printed_quantity_name
 from .. import style
 from ..cells import cell_edges, draw_coloured_cells, fill_cells, new_map_panels
 from ..request import FigureRequest
-from .panels import PANEL_MAKERS, Panel
+from .panels import PANEL_MAKER_BY_TASK, Panel
 from .quantities import NO_BREAK_SPACE, constant_quantities_text, quantity_text, values_and_label
 
 ARM_MAP_FIGURE_KINDS = ("map", "maps")
@@ -64,7 +64,7 @@ def draw_arm_figure(request: FigureRequest) -> str:
         if name not in names
     }
     index = tuple(indices.get(name, slice(None)) for name in view.arm_axes)
-    panels = PANEL_MAKERS[view.task](view)
+    panels = PANEL_MAKER_BY_TASK[view.task](view)
     style.require_content(view, any(np.isfinite(panel.values[index]).any() for panel in panels), "number")
     is_map = len(names) > 1
     is_stacked = request.look.is_narrow or not is_map
@@ -78,13 +78,14 @@ def draw_arm_figure(request: FigureRequest) -> str:
     figure.suptitle(style.heading_text(view, constant_quantities_text(view, shown_names)))
     labels = " and ".join(panel.label for panel in panels)
     constants = {name: place for name, place in indices.items() if name not in shown_names}
-    axes_text = " and ".join(map(quantity_words, names))
+    axes_text = " and ".join(map(printed_quantity_name, names))
     return request.write(figure, f"{labels} over {axes_text}{_omitted_axes_clause(view, constants)}")
 
 
 def _quantities_on_axes(view: ResultView) -> list[str]:
-    """Names of the one or two quantities on the axes, x first: those with the most values. Beside another
-    quantity, the drag is drawn as a band, or for the likeliest drag."""
+    """Names of the one or two quantities on the axes, x first: the quantities with the most values. If
+    another quantity varies, the drag has no axis: results are drawn as a band over all drags, or for the
+    likeliest drag."""
     varied = [name for name in view.arm_axes if len(view.variables[name]) > 1]
     candidates = [name for name in varied if name != DRAG_AXIS] or varied
     longest = sorted(candidates, key=lambda name: -len(view.variables[name]))[:2]
@@ -98,8 +99,8 @@ def _has_drag_band(view: ResultView, names: Sequence[str]) -> bool:
 
 
 def _omitted_axes_clause(view: ResultView, indices: dict[str, int]) -> str:
-    """Clause on the values at which a map is drawn of axes with several values, which it does not show; empty
-    if there is no such axis."""
+    """Clause on the axes with several values that the figure does not show: the value of each axis at which
+    the figure is drawn. Empty if there is no such axis. indices: index of this value, by name of the axis."""
     texts = []
     for name, index in indices.items():
         values = view.variables[name]
@@ -114,7 +115,7 @@ def can_draw_arm_figure(request: FigureRequest) -> bool:
     view = request.views[0]
     has_other_options = request.what not in (None, *ARM_MAP_FIGURE_KINDS) or request.points or request.roots
     has_map = any(len(view.variables[name]) > 1 for name in view.arm_axes)
-    return len(request.views) == 1 and has_map and view.task in PANEL_MAKERS and not has_other_options
+    return len(request.views) == 1 and has_map and view.task in PANEL_MAKER_BY_TASK and not has_other_options
 
 
 def _typed_axis_values_and_label(view: ResultView, name: str) -> tuple[Array, str]:
@@ -126,7 +127,8 @@ def _typed_axis_values_and_label(view: ResultView, name: str) -> tuple[Array, st
 
 
 def _draw_map(axes: Axes, panel: Panel, view: ResultView, names: Sequence[str], index: Any) -> None:
-    """Draws a panel as a map over the two quantities `names`."""
+    """Draws a panel as a map over the two quantities `names`. index: index of the drawn values in the arrays
+    of the file."""
     (x, x_label), (y, y_label) = (_typed_axis_values_and_label(view, name) for name in names)
     values = panel.values[index].T
     draw_coloured_cells(axes, (cell_edges(x), cell_edges(y)), values, panel.label)
@@ -139,7 +141,8 @@ def _draw_map(axes: Axes, panel: Panel, view: ResultView, names: Sequence[str], 
 
 
 def _draw_curves(axes: Axes, panel: Panel, view: ResultView, names: Sequence[str], index: Any) -> None:
-    """Draws a panel as curves against the quantity `names[0]`, with bands of the range over the drags."""
+    """Draws a panel as curves against the quantity `names[0]`, with bands of the range over the drags. index:
+    as in `_draw_map`."""
     (name,) = names
     x, x_label = _typed_axis_values_and_label(view, name)
     lines = {
@@ -154,11 +157,12 @@ def _draw_curves(axes: Axes, panel: Panel, view: ResultView, names: Sequence[str
     if name == DRAG_AXIS:
         words = [DRAG_ESTIMATE_NAMES[int(drag)].replace("_", "\n") for drag in x]
         axes.set_xticks(x, words, rotation=90)
-    style.label_outer_panels(axes, x_label, panel.lines_label if len(lines) > 1 else panel.label)
+    style.label_outer_panels(axes, x_label, panel.threshold_axis_label if len(lines) > 1 else panel.label)
 
 
 def _draw_drag_band(axes: Axes, view: ResultView, x: Array, values: Array, colour: str, index: Any) -> None:
-    """Draws the range of a result over the drags as a band. x: values on the horizontal axis, (n,)."""
+    """Draws the range of a result over the drags as a band. x: values on the horizontal axis, (n,). values:
+    result at all points of the file. index: as in `_draw_map`."""
     drag = view.arm_axes.index(DRAG_AXIS)
     values_by_drag = np.moveaxis(values, drag, -1)[(*index[:drag], *index[drag + 1 :])]
     bounds = (bound.reduce(values_by_drag, axis=-1) for bound in (np.fmin, np.fmax))
@@ -170,8 +174,8 @@ def _draw_drag_band(axes: Axes, view: ResultView, x: Array, values: Array, colou
 def _cover_invalid_cells(
     axes: Axes, view: ResultView, panel: Panel, names: Sequence[str], index: Any
 ) -> None:
-    """Hatches the cells where the model does not apply, and fills the cells outside the rod model, and in a
-    map the cells without a value."""
+    """Hatches the cells where the model is doubtful or does not apply, and fills the cells of arms that
+    correspond to no rod; in a map, also fills the cells without a value. index: as in `_draw_map`."""
     is_map = len(names) > 1
     edges = [cell_edges(_typed_axis_values_and_label(view, name)[0]) for name in names]
     y_limits = axes.get_ylim()

@@ -15,7 +15,7 @@ from ....model.arm.drag import DRAG_ESTIMATE_NAMES
 from ....model.arm.quantities import ARM_FILE_VARIABLES, ARM_SCALES, LOAD_NAME_BY_RELATIVE_LOAD
 from ....model.units import value_in_unit
 from ....results.file.view import ResultView
-from ...summary.arm.arm_texts import quantity_words
+from ...summary.arm.arm_texts import printed_quantity_name
 from ...tables.rows_and_columns import arm_quantities_at_points
 from ..style import heading_text
 
@@ -26,7 +26,7 @@ EQUAL_PARAMETER_TOLERANCE = 1e-9
 number."""
 
 
-def in_typed_unit(view: ResultView, name: str, values: Array, si: str = "") -> tuple[Array, str]:
+def values_and_typed_unit(view: ResultView, name: str, values: Array, si: str = "") -> tuple[Array, str]:
     """Returns (values, unit) of the quantity `name` in the unit typed by the user. values: in the SI unit
     `si` (by default the unit of the quantity), of any shape."""
     si = si or ARM_FILE_VARIABLES[name].unit
@@ -37,15 +37,17 @@ def in_typed_unit(view: ResultView, name: str, values: Array, si: str = "") -> t
 def values_and_label(view: ResultView, name: str, values: Array) -> tuple[Array, str]:
     """Returns (values in the unit typed by the user, label of an axis) of the quantity `name`. values: in SI
     units, (n,)."""
-    values, unit = in_typed_unit(view, name, values)
-    return values, quantity_words(name) + (f" ({unit})" if unit else "")
+    values, unit = values_and_typed_unit(view, name, values)
+    return values, printed_quantity_name(name) + (f" ({unit})" if unit else "")
 
 
 def quantity_label_and_texts(view: ResultView, name: str, values: Array) -> tuple[str, list[str]]:
     """Returns (label, values as text) of the quantity `name`, in the unit typed by the user. values: in SI
     units, (n,); for a drag, indices in DRAG_ESTIMATE_NAMES."""
     if name == "drag":
-        return quantity_words(name), [DRAG_ESTIMATE_NAMES[int(value)].replace("_", " ") for value in values]
+        return printed_quantity_name(name), [
+            DRAG_ESTIMATE_NAMES[int(value)].replace("_", " ") for value in values
+        ]
     typed_values, label = values_and_label(view, name, values)
     return label, [f"{value:.4g}" for value in typed_values]
 
@@ -55,15 +57,16 @@ def quantity_text(view: ResultView, name: str, value: float) -> str:
     SI units; for a drag, index in DRAG_ESTIMATE_NAMES."""
     if name == "drag":
         return f"{name}{NO_BREAK_SPACE}{DRAG_ESTIMATE_NAMES[int(value)].replace('_', NO_BREAK_SPACE)}"
-    converted, unit = in_typed_unit(view, name, np.array([value]))
+    converted, unit = values_and_typed_unit(view, name, np.array([value]))
     unit = unit.replace("^3", "$^3$").replace("*", " ").replace(" ", NO_BREAK_SPACE)
-    return f"{quantity_words(name)}{NO_BREAK_SPACE}{converted[0]:.4g}{NO_BREAK_SPACE}{unit}".rstrip(
+    return f"{printed_quantity_name(name)}{NO_BREAK_SPACE}{converted[0]:.4g}{NO_BREAK_SPACE}{unit}".rstrip(
         NO_BREAK_SPACE
     )
 
 
 def constant_quantities_text(view: ResultView, drawn_names: Sequence[str] = ()) -> str:
-    """Constant quantities of the arm with their values, as text; empty without an arm."""
+    """Quantities of the arm, except `drawn_names`, with their values, as text; of an axis with several
+    values, the smallest value. Empty without an arm."""
     texts = []
     for name, values in view.quantities.items():
         if name in drawn_names or name in ARM_SCALES:
@@ -90,8 +93,8 @@ def quantities_at_point(view: ResultView, number: int) -> dict[str, float]:
 
 
 def k2_at_poisson_ratio(view: ResultView, poisson: float) -> float:
-    """The dimensionless k2 of the arm of a file with the Poisson's ratio `poisson`; only this ratio, a load
-    and the drag may vary in the file."""
+    """The dimensionless k2 that the arm of a file has for the Poisson's ratio `poisson`. In the file only
+    this ratio, a load and the drag may vary."""
     quantities: dict[str, Any] = {
         name: float(np.ravel(view.quantities[name])[0]) for name in NON_LOAD_KEYS if name in view.quantities
     }

@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullLocator
 
-from ....model.arm.quantities import LOAD_SCALE_NAMES, UNITS_AND_EXAMPLES
+from ....model.arm.quantities import LOAD_SCALE_NAME_BY_LOAD, UNITS_AND_EXAMPLES
 from ....model.units import with_si_prefix
 from ....results.file.view import ResultView
 from ..style import AXIS_LABELS, CRITICAL_FORCE_LABEL
@@ -24,9 +24,9 @@ SUPPORTED_AXIS_SCALES = ("linear", "log")
 """Scales of an axis for which matplotlib places the ticks of a second scale correctly."""
 MAX_TICK_INTERVALS = 5
 """Largest number of intervals between the ticks of the second scale."""
-TICK_ROUNDING_TOLERANCE = 1e-9
-"""Relative rounding error of k2 at a tick of Poisson's ratio."""
-LOAD_SCALE_LABELS = {"pressure": "pressure on the tip", "force": "force at the tip"}
+RELATIVE_K2_TICK_ROUNDING = 1e-9
+"""A tick of Poisson's ratio is drawn if its k2 lies beyond the axis by at most this relative amount."""
+LOAD_SCALE_LABEL_BY_LOAD_KIND = {"pressure": "pressure on the tip", "force": "force at the tip"}
 """Label of the second scale, by kind of load."""
 
 
@@ -34,7 +34,7 @@ def add_arm_scales(figure: Figure, views: Sequence[ResultView]) -> None:
     """Adds a scale in SI units to every axis of the follower force, if all files belong to one arm, and a
     scale of Poisson's ratio to every axis of k2, if the ratio varies in a single file."""
     load_kind = "force" if all(view.load_kind == "force" for view in views) else "pressure"
-    scales = [np.ravel(view.quantities.get(LOAD_SCALE_NAMES[load_kind], np.nan)) for view in views]
+    scales = [np.ravel(view.quantities.get(LOAD_SCALE_NAME_BY_LOAD[load_kind], np.nan)) for view in views]
     load_scales = np.unique(np.concatenate(scales))
     for axes in list(figure.axes):
         for letter in ("x", "y"):
@@ -48,7 +48,7 @@ def add_arm_scales(figure: Figure, views: Sequence[ResultView]) -> None:
 
 
 def _is_k2_varied_by_poisson_only(view: ResultView) -> bool:
-    """Whether k2 varies in a grid with Poisson's ratio only."""
+    """Whether the points form a grid in which k2 varies only because Poisson's ratio varies."""
     ratio_count = np.size(view.quantities.get("poisson", ()))
     return view.is_grid and ratio_count > 1 and ratio_count == np.size(view.parameter_values.get("k2", ()))
 
@@ -61,7 +61,7 @@ def _add_poisson_scale(panel: Axes, letter: str, view: ResultView) -> None:
     positions = np.array([k2_at_poisson_ratio(view, float(ratio)) for ratio in ticks])
     # Ticks beyond the drawn range would widen the axis; rounding moves ticks at the ends of the range.
     low, high = sorted(getattr(panel, f"get_{letter}lim")())
-    margin = TICK_ROUNDING_TOLERANCE * abs(positions)
+    margin = RELATIVE_K2_TICK_ROUNDING * abs(positions)
     is_visible = (positions >= low - margin) & (positions <= high + margin)
     axis = _opposite_axis(panel, letter, "Poisson's ratio")
     axis.set_ticks(positions[is_visible], [f"{ratio:.4g}" for ratio in ticks[is_visible]])
@@ -87,13 +87,13 @@ def _add_load_scale(panel: Axes, letter: str, unit: float, load_kind: str) -> No
     largest_load = unit * max(map(abs, getattr(panel, f"get_{letter}lim")()))
     factor, symbol = with_si_prefix(largest_load, UNITS_AND_EXAMPLES[load_kind][0])
     functions = partial(np.multiply, unit * factor), partial(np.multiply, 1 / (unit * factor))
-    axis = _opposite_axis(panel, letter, f"{LOAD_SCALE_LABELS[load_kind]} ({symbol})", functions)
+    axis = _opposite_axis(panel, letter, f"{LOAD_SCALE_LABEL_BY_LOAD_KIND[load_kind]} ({symbol})", functions)
     axis.set_major_locator(MaxNLocator(MAX_TICK_INTERVALS))
 
 
 def _opposite_axis(panel: Axes, letter: str, label: str, functions: Any = None) -> Any:
-    """New axis of a panel, opposite to the axis `letter`. functions: from the values on the axis `letter` to
-    the values on the new axis, and back; None if both are equal."""
+    """New axis of a panel, opposite to the axis `letter`. functions: (function, inverse) that convert values
+    on the axis `letter` to values on the new axis, and back; None if both values are equal."""
     is_x = letter == "x"
     new_axes: Any = (
         panel.secondary_xaxis("top", functions=functions)

@@ -18,7 +18,7 @@ from ..style import AXIS_LABELS
 VALIDITY_HATCHES = {Validity.does_not_apply: "////", Validity.doubtful: "..."}
 """Hatches of points by validity of the model; other points have none."""
 COMPRESSION_HATCH = r"\\\\"
-"""Hatch of loads along the rows of a phase diagram that compress an arm beyond the limit of the model."""
+"""Hatch of the part of a phase diagram in which the load compresses the arm beyond the limit of the model."""
 HATCH_LOOK: dict[str, Any] = {"fc": "none", "ec": "0.6"}
 """Matplotlib style of all hatches."""
 VALIDITY_NOTES = {
@@ -40,8 +40,8 @@ def hatch_invalid_points(figure: Figure, views: Sequence[ResultView]) -> None:
 def _hatch_and_note(
     figure: Figure, views: Sequence[ResultView], validities: Sequence[np.ndarray], validity: Validity
 ) -> str:
-    """Hatches the points of a figure with a validity of the model, and returns the note for the title; empty
-    if there is no such point. validities: validities of all points of each file."""
+    """Hatches the points of a figure at which the model has the validity `validity`, and returns the note for
+    the title; empty if there is no such point. validities: validities of all points of each file."""
     outside = [np.asarray(values == validity) for values in validities]
     number, count = (sum(map(counting, outside)) for counting in (np.count_nonzero, np.size))
     if not number:
@@ -82,7 +82,7 @@ def _hatch_points(
 
 def hatch_compressed(axes: Axes, view: ResultView, ratio: Array, x: Array, y: Array) -> list[Patch]:
     """Hatches the part of a phase diagram of arms in which the load compresses the arm beyond the limit of
-    the model; returns a list with its legend entry, empty for rods, for rubber and for smaller loads.
+    the model; returns a list with the legend entry, empty for rods, for rubber and for smaller loads.
 
     ratio: force divided by the force that crushes the arm, at x and y, (pixels, pixels); 0 for rubber, whose
     law includes large compression. x, y: coordinates, (pixels,).

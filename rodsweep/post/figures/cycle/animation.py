@@ -35,25 +35,25 @@ FILM_SUFFIXES = (".gif", ".mp4")
 """Suffixes of animation files."""
 FILM_PERIOD_SECONDS = 2.4
 """Duration of one period of the cycle on the screen, in s."""
-MIN_SHAPES = 8
+MIN_SHAPES_PER_PERIOD = 8
 """Smallest number of stored shapes per period; with fewer shapes the motion is not recognisable."""
 EARLIER_SHAPE_COUNT = 6
 """Number of earlier shapes drawn in fading colours behind the arm."""
 PERIOD_DIGITS = 3
 """Number of significant digits of the period. The running time is printed with as many decimals as the
 period."""
-TIME_TEXT_HEIGHT = 0.08
+RELATIVE_TIME_TEXT_HEIGHT = 0.08
 """Height of the line with the running time, as a fraction of the panel's height."""
 MAX_EARLIER_SHAPE_AGE = 0.2
 """Age of the oldest earlier shape that is drawn, in periods."""
 DPI = 100
 """Resolution of a frame, in pixels per inch."""
-FRAME_SIZE = (3.6, 4.0)
+FRAME_SIZE_IN_INCHES = (3.6, 4.0)
 """Width and height of a frame of a released motion, in inches."""
 FRAME_RATE = 16
 """Frames per second of a released motion. The 32 shapes between two returns of the tip take 2 s, as on the
 page of `rodsweep explore`."""
-MAX_FRAMES = 256
+MAX_RELEASED_MOTION_FRAMES = 256
 """Largest number of frames of a released motion: a film of 16 s, whose drawing takes some 10 s."""
 
 
@@ -62,7 +62,7 @@ def write_animation(view: ResultView, points: Sequence[int], output: Path) -> st
     a description. Raises InputError for too few shapes."""
     selection = chosen_cycles(view, points, SHAPE_VARIABLE_NAMES)
     frames = len(selection.cycles[0].values["shape_x"])
-    if frames < MIN_SHAPES:
+    if frames < MIN_SHAPES_PER_PERIOD:
         remedy = "too few for an animation; run with limit_cycle.shapes: 48"
         raise InputError(f"{view.path} holds {frames} shapes of a cycle, {remedy}")
     writer = _film_writer(output, max(1, round(frames / FILM_PERIOD_SECONDS)))
@@ -85,7 +85,7 @@ def prepared_animation(selection: CycleSelection) -> tuple[Figure, list["MovingA
     arms = [MovingArm(axes, cycle) for axes, cycle in zip(panels, cycles, strict=True)]
     set_common_limits(panels, cycles)
     low, high = panels[0].get_ylim()  # shared by all panels
-    panels[0].set_ylim(low - TIME_TEXT_HEIGHT * (high - low), high)
+    panels[0].set_ylim(low - RELATIVE_TIME_TEXT_HEIGHT * (high - low), high)
     for arm in arms:
         arm.show_frame(0)
     fit_layout(figure)
@@ -154,9 +154,9 @@ class FilmedMotion(NamedTuple):
 
 
 def motion_film(motion: FilmedMotion) -> bytes:
-    """The motion as the content of a GIF file, with at most the first MAX_FRAMES shapes."""
-    frames = min(len(motion.x), MAX_FRAMES)
-    figure = Figure(figsize=FRAME_SIZE, layout="constrained")
+    """The motion as the content of a GIF file, with at most the first MAX_RELEASED_MOTION_FRAMES shapes."""
+    frames = min(len(motion.x), MAX_RELEASED_MOTION_FRAMES)
+    figure = Figure(figsize=FRAME_SIZE_IN_INCHES, layout="constrained")
     axes = figure.subplots()
     draw_clamp(axes, motion.length)
     margin = SHAPE_MARGIN * motion.length

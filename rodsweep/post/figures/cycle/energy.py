@@ -19,11 +19,11 @@ ENERGY_RATE_MARK_COUNT = 24
 
 
 def draw_energy(view: ResultView, points: Sequence[int], is_narrow: bool = False) -> tuple[Figure, str]:
-    """Returns (figure, description). A column of panels for each cycle: energy U; injection and dissipation;
-    injection minus dissipation with marks of dU/dt.
+    """Returns (figure, description). The figure has a column of panels for each cycle: energy U; injection
+    and dissipation; injection minus dissipation with marks of dU/dt.
 
     The marks are derivatives of the stored energy U, computed independently of the curve, and must lie on the
-    curve.
+    curve. is_narrow: whether the legend has at most two columns.
     """
     selection = chosen_cycles(view, points, ENERGY_BUDGET_VARIABLE_NAMES)
     cycles = selection.cycles
@@ -34,7 +34,7 @@ def draw_energy(view: ResultView, points: Sequence[int], is_narrow: bool = False
     )
     for panels, cycle in zip(panel_rows.T, cycles, strict=True):
         _draw_budget(panels, cycle)
-        panels[0].set_title(cycle.heading(cycle.period_text, *_power_and_imbalance_texts(cycle)))
+        panels[0].set_title(cycle.heading(cycle.period_text, *_power_and_energy_imbalance_texts(cycle)))
     panel_rows[1, 0].set_ylim(bottom=min(0.0, panel_rows[1, 0].get_ylim()[0]))
     for axes, label in zip(panel_rows[:, 0], cycles[0].units.energy_and_power_labels, strict=True):
         axes.set_ylabel(label)
@@ -44,7 +44,7 @@ def draw_energy(view: ResultView, points: Sequence[int], is_narrow: bool = False
     return figure, "energy, injection and dissipation over a cycle" + selection.omissions_clause
 
 
-def _power_and_imbalance_texts(cycle: StoredCycle) -> tuple[str, str]:
+def _power_and_energy_imbalance_texts(cycle: StoredCycle) -> tuple[str, str]:
     """Returns (mean power of the force, relative energy imbalance) as text, the power in the unit of the
     panels, rounded according to its error."""
     cycle_values = {name: float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance")}
@@ -58,8 +58,8 @@ def _power_and_imbalance_texts(cycle: StoredCycle) -> tuple[str, str]:
 
 
 def _draw_budget(panels: Sequence[Axes], cycle: StoredCycle) -> None:
-    """Draws the three panels of a cycle over a period, from top to bottom: energy; injection and
-    dissipation; and their difference, with the derivative of the energy."""
+    """Draws the three panels of a cycle over a period, from top to bottom: energy; injection and dissipation;
+    injection minus dissipation, with marks of the derivative of the energy."""
     from ....discretization.elements.trigonometric import (  # compiled code
         interpolate_samples,
         time_derivative,

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....config.arm.axes import PARAMETER_CHANGED_ALONG
 from ....results.file.view import ResultView
-from ....results.layouts.limit_cycle import CYCLE_STATUSES
+from ....results.layouts.limit_cycle import STATUS_NAMES_WITH_CYCLE
 from ....sweep.points.points import ParameterLine
 from ...located_thresholds import LocatedThreshold, StoredThresholds
 from .. import style
@@ -61,11 +61,11 @@ panel."""
 
 def draw_maps(view: ResultView, is_narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). The figure has maps of the period and of the largest y of the tip, with
-    Hopf points, unstable cycles, and the statuses of cells without a cycle. Raises InputError if no point has
-    a cycle."""
+    Hopf points, unstable cycles, and the statuses of cells without a cycle. is_narrow: whether the maps are
+    stacked. Raises InputError if no point has a cycle."""
     points = point_grid(view)
     statuses = view.status_names[points.point_indices]
-    cycles = np.isin(statuses, CYCLE_STATUSES)
+    cycles = np.isin(statuses, STATUS_NAMES_WITH_CYCLE)
     style.require_content(view, cycles.any(), "cycle")
     figure, panels = new_map_panels(2, is_narrow)
     lines = hopf_lines(points, view)
@@ -88,7 +88,7 @@ def _common_parameters_text(view: ResultView, points: PointGrid, is_in_si: bool)
     """Text of the parameters that are equal at all points; for an arm (`is_in_si`), of the quantities that
     are equal at all points."""
     if not is_in_si:
-        return style.parameter_text(points.common_parameters)
+        return style.parameter_text(points.shared_parameters)
     varied = (quantity for quantity, name in PARAMETER_CHANGED_ALONG.items() if name in points.names)
     numbers = [int(points.point_indices[place]) + 1 for place in ((0, 0), (-1, -1))]
     return shared_and_own_texts_of_arms(view, numbers, {*points.names, *varied})[0]
@@ -99,7 +99,7 @@ def _draw_statuses(axes: Axes, points: PointGrid, statuses: NDArray[np.str_]) ->
     nx)."""
     unlisted_looks = cycle(UNLISTED_STATUS_LOOKS)
     for word in dict.fromkeys([*STATUS_LOOKS, *np.unique(statuses).tolist()]):
-        if word not in CYCLE_STATUSES and word in statuses:
+        if word not in STATUS_NAMES_WITH_CYCLE and word in statuses:
             colour, hatch = STATUS_LOOKS.get(word) or next(unlisted_looks)
             look = {"fc": colour, "hatch": hatch, "ec": CYCLE_MAP_GREY, "label": word.replace("_", " ")}
             fill_cells(axes, points.edges, statuses == word, **look)
@@ -117,7 +117,7 @@ def _mark_unstable(axes: Axes, points: PointGrid, unstable: NDArray[np.bool_]) -
 def _draw_hopf_lines(axes: Axes, points: PointGrid, lines: Sequence[Array]) -> None:
     """Draws lines of Hopf points. lines: (x, y) of each line, (2, n). On these lines the leading growth rate
     is zero. Every zero is a Hopf point: no eigenvalue can pass through 0, because the characteristic
-    determinant is D(0) = 1."""
+    determinant D has D(0) = 1."""
     label = f"Hopf points ${HOPF_SYMBOL}$" if "F" in points.names else "Hopf points"
     path_effects = [withStroke(linewidth=3.0, foreground="white")]
     for line in lines:
@@ -153,7 +153,7 @@ def _hopf_points(points: PointGrid, view: ResultView) -> Iterator[Array]:
     name, row_parameter = points.names
     stored_thresholds = StoredThresholds(view, name)
     for value, row_indices in zip(points.y, points.point_indices, strict=True):
-        parameters = points.common_parameters | {row_parameter: float(value)}
+        parameters = points.shared_parameters | {row_parameter: float(value)}
         changes = stored_thresholds.thresholds_on_line(ParameterLine(name, parameters, points.x, row_indices))
         located = (change for change in changes if isinstance(change, LocatedThreshold))
         yield np.array([change.position for change in located if change.changes_stability])

@@ -78,7 +78,7 @@ class StoredCycle:
         return rf"${symbol}{{=}}$ ${rounded_number_in_tex(rounded_text(value, abs(value) * error))}\,{unit}$"
 
     @property
-    def tip(self) -> tuple[Array, Array]:
+    def tip_path(self) -> tuple[Array, Array]:
         """Returns (x, y) of the tip over a period, from the samples if stored, else from the shapes."""
         if "tip_x" in self.values:
             return self.values["tip_x"], self.values["tip_y"]
@@ -114,9 +114,9 @@ class CycleSelection:
 
 
 def chosen_cycles(view: ResultView, points: Sequence[int], variable_names: Sequence[str]) -> CycleSelection:
-    """Cycles at the points with the numbers `points`, or the first cycles, at most MAX_CYCLES, if `points` is
-    empty. Raises InputError if a point, a cycle or a variable is missing, or for more than MAX_CYCLES
-    points."""
+    """Stable cycles at the points with the numbers `points`, or the first stable cycles, at most MAX_CYCLES,
+    if `points` is empty. Raises InputError if a point, a stable cycle or a variable is missing, or for more
+    than MAX_CYCLES points."""
     _require_variables(view, variable_names)
     complaint = "the point has no cycle to draw; its status is {status}; choose another"
     return _selected_cycles(view, points, view.status_names == "cycle", "cycle", complaint)
@@ -148,8 +148,9 @@ def _selected_cycles(
     view: ResultView, points: Sequence[int], is_drawable: NDArray[np.bool_], noun: str, complaint: str
 ) -> CycleSelection:
     """Selection of the points with the numbers `points`, or of the first drawable points if `points` is
-    empty. is_drawable: mask, (points,). complaint: message on a chosen point that is not drawable, with
-    `{status}`. Raises InputError if no point, or a chosen point, is not drawable."""
+    empty. is_drawable: mask, (points,). noun: word for a drawable point, for messages. complaint: message on
+    a chosen point that is not drawable, with `{status}`. Raises InputError if no point, or a chosen point, is
+    not drawable."""
     statuses = view.status_names
     status_words = [word.replace("_", " ") for word in list_of(statuses)]
     if len(points) > MAX_CYCLES:

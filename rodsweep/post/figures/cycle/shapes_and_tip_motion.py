@@ -48,7 +48,7 @@ PANEL_PADDING = 0.1
 to half this space."""
 TOTAL_TEXT_HEIGHT = 1.4
 """Height of all labels and headings above and below the panels, in inches."""
-NARROW_TOTAL_TEXT_HEIGHT = 2.0
+TOTAL_TEXT_HEIGHT_ON_NARROW_PAGE = 2.0
 """Height corresponding to `TOTAL_TEXT_HEIGHT` on a narrow page, with the colour bar below the panels."""
 UNUSED_COLOUR_FRACTION = 0.14
 """Fraction of the colour map that is not used: the yellow end, which is invisible on white paper."""
@@ -67,7 +67,7 @@ def draw_shapes_and_tip_motion(
     figure, shape_panels, tip_panels = _new_panels(cycles, is_narrow)
     has_transients = all(cycle.has_transient for cycle in cycles)
     end = DRAWN_TIP_PERIODS * max(cycle.period for cycle in cycles)
-    shape_indices, step = drawn_shape_indices(len(cycles[0].values["shape_x"]))
+    shape_indices, step = drawn_shapes_and_time_step(len(cycles[0].values["shape_x"]))
     shades = shades_of_shapes(len(shape_indices))
     for axes, (upper, lower), cycle in zip(shape_panels, tip_panels, cycles, strict=True):
         draw_tip_path(axes, cycle)
@@ -92,8 +92,8 @@ def _new_panels(
     cycles: Sequence[StoredCycle], is_narrow: bool
 ) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
     """Returns (figure, one panel for the shapes of each cycle, two panels for the tip of each cycle). The
-    panels of the tip are to the right of the shapes of a single cycle, and below the shapes of several
-    cycles. A panel with shapes has the aspect ratio of its content, so no space is blank."""
+    panels of the tip are to the right of the shapes of a single cycle, and below the shapes of several cycles
+    or if `is_narrow`. A panel with shapes has the aspect ratio of its content, so no space is blank."""
     cycle_count = len(cycles)
     (x_min, x_max), (y_min, y_max) = limits_of_shapes(cycles)
     if cycle_count == 1 and not is_narrow:
@@ -103,7 +103,7 @@ def _new_panels(
         table["x"].sharex(table["y"])
         return figure, [table["shapes"]], [(table["x"], table["y"])]
     shapes_height = SHAPE_PANEL_WIDTH * (y_max - y_min) / (x_max - x_min)
-    text_height = NARROW_TOTAL_TEXT_HEIGHT if is_narrow else TOTAL_TEXT_HEIGHT
+    text_height = TOTAL_TEXT_HEIGHT_ON_NARROW_PAGE if is_narrow else TOTAL_TEXT_HEIGHT
     figure_size = SHAPE_PANEL_WIDTH * cycle_count + 1.2, shapes_height + 2 * TIP_PANEL_HEIGHT + text_height
     figure = Figure(figsize=figure_size, layout=ConstrainedLayoutEngine(w_pad=PANEL_PADDING))
     heights = (shapes_height, TIP_PANEL_HEIGHT, TIP_PANEL_HEIGHT)
@@ -113,7 +113,7 @@ def _new_panels(
     return figure, list(panel_rows[0]), list(zip(panel_rows[1], panel_rows[2], strict=True))
 
 
-def drawn_shape_indices(stored: int) -> tuple[range, float]:
+def drawn_shapes_and_time_step(stored: int) -> tuple[range, float]:
     """Returns (indices, step): indices of the drawn shapes, and time between two drawn shapes, in periods.
     stored: number of stored shapes per period."""
     stride = -(-stored // MAX_SHAPES)
@@ -124,7 +124,7 @@ def _draw_colour_bar_of_times(
     figure: Figure, panels: list[Axes], colours: ListedColormap, step: float, is_below: bool
 ) -> None:
     """Draws the colour bar with the times of the shapes. colours: colours of the shapes. step: time between
-    two shapes, in periods."""
+    two shapes, in periods. is_below: whether the bar is below the panels, not to their right."""
     colour_count = colours.N
     norm = BoundaryNorm((np.arange(colour_count + 1) - 0.5) * step, colour_count)
     ticks = [colour_index * step for colour_index in range(0, colour_count, max(1, colour_count // 4))]
@@ -156,7 +156,7 @@ def draw_tip_path(axes: Axes, cycle: StoredCycle) -> None:
     from ....discretization.elements.trigonometric import interpolate_samples  # compiled code
 
     phase = np.linspace(0, 1, 401, dtype=np.float64)
-    x, y = (interpolate_samples(values, phase) for values in cycle.tip)
+    x, y = (interpolate_samples(values, phase) for values in cycle.tip_path)
     axes.plot(x, y, color="0.6", lw=0.8, ls=(0, (4, 2)), zorder=1)
 
 
@@ -215,7 +215,7 @@ def _draw_tip_motion(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -
     from ....discretization.elements.trigonometric import interpolate_samples  # compiled code
 
     time = np.linspace(0, end, 801, dtype=np.float64)
-    for axes, values, colour in zip((upper, lower), cycle.tip, (BLUE, VERMILION), strict=True):
+    for axes, values, colour in zip((upper, lower), cycle.tip_path, (BLUE, VERMILION), strict=True):
         axes.plot(time, interpolate_samples(values, time / cycle.period), color=colour, lw=1.4)
         if len(values) < MAX_MARKED_SAMPLES_PER_PERIOD:
             indices = np.arange(int(end / cycle.period * len(values)) + 1)

@@ -11,8 +11,8 @@ segments enclose an angle of 1.4 degrees on average, and of 12 degrees at sharp 
 
 
 def smooth_tip_path(tips: Array, is_closed: bool) -> Array:
-    """Path through the tips of shapes at equal distances in time, (n, 2): SEGMENTS_BETWEEN_SHAPES segments
-    between two tips, (vertices, 2).
+    """Smooth path, (vertices, 2), through the positions `tips` of the tip at equal time steps, (n, 2), with
+    SEGMENTS_BETWEEN_SHAPES straight segments between two positions.
 
     Each coordinate is a cubic polynomial between two shapes, and its rate at a shape is the central
     difference of the neighbouring shapes, as on the page of `rodsweep explore`. is_closed: whether the last

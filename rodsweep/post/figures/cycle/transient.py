@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ....results.file.view import ResultView
-from ....results.layouts.limit_cycle import CYCLE_STATUSES
+from ....results.layouts.limit_cycle import STATUS_NAMES_WITH_CYCLE
 from ..style import BLUE, VERMILION
 from .selection import TRANSIENT_VARIABLE_NAMES, StoredCycle, chosen_transients
 from .units_and_labels import CycleUnits
@@ -30,7 +30,7 @@ def draw_transients(view: ResultView, points: Sequence[int], is_narrow: bool = F
     for (upper, lower), cycle in zip(panel_rows.T, selection.cycles, strict=True):
         draw_start_of_motion(upper, lower, cycle)
         ends = [cycle.status_name.replace("_", " ")]
-        if cycle.status_name in CYCLE_STATUSES:
+        if cycle.status_name in STATUS_NAMES_WITH_CYCLE:
             ends[0] += "" if is_narrow else " (extrema dashed)"
             ends.append(cycle.period_text)
         upper.set_title(cycle.heading(*ends))
@@ -50,7 +50,7 @@ def draw_start_of_motion(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
         (upper, lower), tip_values, (BLUE, VERMILION), levels, strict=True
     ):
         axes.plot(time, values, color=colour, lw=1.1)
-        for name, sign in extrema if cycle.status_name in CYCLE_STATUSES else ():
+        for name, sign in extrema if cycle.status_name in STATUS_NAMES_WITH_CYCLE else ():
             axes.axhline(sign * float(cycle_values[name]), **EXTREMUM_LINE_LOOK)
         axes.margins(x=0)
     label_time_axes(upper, lower, cycle)

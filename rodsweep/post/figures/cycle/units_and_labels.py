@@ -80,7 +80,7 @@ class CycleUnits:
 
     @property
     def power_unit_per_energy_rate(self) -> float:
-        """Ratio of the figure's units of energy and time, (energy unit)/(time unit), in the figure's unit of
+        """The quotient (unit of energy)/(unit of time) of the figure, expressed in the figure's unit of
         power."""
         return self.power * self.time / self.energy
 
@@ -128,9 +128,12 @@ def units_of_files(views: Sequence[ResultView], indices: Sequence[NDArray[np.int
         )
         scales.append((L, tau2, force * L, force * L / tau2))
     of_files = list(zip(views, indices, scales, strict=True))
-    period = max(_largest_in_units(view, "period", chosen, scale[1]) for view, chosen, scale in of_files)
+    period = max(
+        _largest_absolute_in_units(view, "period", chosen, scale[1]) for view, chosen, scale in of_files
+    )
     mean_power = max(
-        _largest_in_units(view, "injection_mean", chosen, scale[3]) for view, chosen, scale in of_files
+        _largest_absolute_in_units(view, "injection_mean", chosen, scale[3])
+        for view, chosen, scale in of_files
     )
     largest_energy = max(float(np.nanmax(scale[2])) for scale in scales)
     names = (
@@ -147,7 +150,9 @@ def units_of_files(views: Sequence[ResultView], indices: Sequence[NDArray[np.int
     return units
 
 
-def _largest_in_units(view: ResultView, name: str, indices: NDArray[np.int64], factors: Array) -> float:
+def _largest_absolute_in_units(
+    view: ResultView, name: str, indices: NDArray[np.int64], factors: Array
+) -> float:
     """Maximum of |v| f over the points with the indices `indices`, (n,); 0 if no value is finite. v: variable
     `name`. f: `factors`, (n,)."""
     return float(np.nanmax(np.abs(view.variables[name].ravel()[indices]) * factors, initial=0.0))

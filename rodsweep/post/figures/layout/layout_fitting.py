@@ -17,12 +17,12 @@ from matplotlib.image import AxesImage
 from matplotlib.legend import Legend
 from matplotlib.text import Text
 
-from .ticks import thin_ticks
+from .tick_thinning import thin_ticks
 
 MIN_ASPECT = 0.45
 """Smallest ratio of height to width of a panel. If a panel is flatter, the height of the figure is
 increased."""
-MAP_ASPECT = 0.7
+MIN_MAP_ASPECT = 0.7
 """Smallest ratio of height to width of a map, in which slopes along x and along y must be visible."""
 MIN_TIME_PANEL_ASPECT = 0.25
 """Smallest ratio of height to width of a panel with a curve against time, in a figure with several panels."""
@@ -179,7 +179,8 @@ def _fit_legends(figure: Figure) -> bool:
 
 
 def _spare_height(figure: Figure, min_aspect: float) -> float:
-    """Height, in inches, by which the figure can shrink until the first panel reaches its smallest height."""
+    """Height, in inches, by which the figure can shrink until the first panel reaches its smallest height.
+    min_aspect: smallest ratio of height to width of a panel."""
     width, height = figure.get_size_inches()
     spares = [height]
     for axes in figure.axes:

@@ -14,9 +14,10 @@ MIN_MODULUS_RATIO_FOR_SYMLOG = 100.0
 """An axis is symmetric logarithmic if the ratio of the largest to the smallest nonzero modulus exceeds
 this number."""
 LINEAR_RANGE_FRACTION = 1e-6
-"""A symmetric logarithmic axis is linear at least up to this fraction of the largest modulus."""
+"""A symmetric logarithmic axis is linear up to this fraction of the largest modulus, or up to the quantile
+LINEAR_RANGE_QUANTILE if this is larger. The limit is rounded down to a power of ten."""
 LINEAR_RANGE_QUANTILE = 0.1
-"""Fraction of the eigenvalues that lie in the linear range of a symmetric logarithmic axis."""
+"""Quantile of the moduli for the linear range of a symmetric logarithmic axis."""
 MODE_LOOKS = {True: (VERMILION, "s", "growing mode"), False: (BLUE, "o", "decaying mode")}
 """(colour, marker, legend entry) of growing modes (True) and decaying modes (False)."""
 MAX_NUMBERED_MODES = 8

@@ -36,7 +36,7 @@ THRESHOLD_LOOKS = {
     "restabilization": ("restabilization", "--"),
 }
 """(symbol or word, line style) of each kind of threshold."""
-THRESHOLD_WORDS = {
+THRESHOLD_LEGEND_ENTRIES = {
     "onset": "onset of oscillation",
     "hopf": "change of stability",
     "restabilization": "change of stability",
@@ -49,7 +49,7 @@ INSTABILITY_SHADE_LOOK: dict[str, Any] = {"color": "0.92", "lw": 0, "zorder": 0}
 """Matplotlib style of the range in which the straight rod is unstable."""
 
 
-def select_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.ndarray:
+def followed_or_all_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.ndarray:
     """Two followed roots at each point, complex, (points, 2); all stored roots, (points, modes), if `roots`
     is "all".
 
@@ -83,9 +83,10 @@ def with_gaps_between_roots(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, n
 
 def choice_of_followed_roots(views: Sequence[ResultView], typed_roots: str | None) -> str:
     """Choice of the roots along lines of spectra, one of ROOT_CHOICES: the user's choice `typed_roots`, or
-    else "smallest" or "rightmost", whichever gives fewer gaps and shows a growing root where one is stored.
+    else "smallest" or "rightmost": if only one of these choices hides no growing root, this choice, otherwise
+    the choice with fewer gaps.
 
-    If the numbers of gaps are equal, the smallest roots are followed, as in the paper. If a file stores only
+    If both choices are equal in this, the smallest roots are followed, as in the paper. If a file stores only
     one root, the choice is "all".
     """
     if any(len(view.variables["mode"]) < FOLLOWED_ROOT_COUNT for view in views):
@@ -109,8 +110,10 @@ def choice_of_followed_roots(views: Sequence[ResultView], typed_roots: str | Non
 
 
 def _followed_roots(view: ResultView, roots: str) -> Complex:
-    """Roots at the points of a line, as from `select_roots`."""
-    return select_roots(view.flattened_by_point("growth_rate"), view.flattened_by_point("frequency"), roots)
+    """Roots at the points of a line, the result of `followed_or_all_roots`."""
+    return followed_or_all_roots(
+        view.flattened_by_point("growth_rate"), view.flattened_by_point("frequency"), roots
+    )
 
 
 def draw_spectra_along_line(view: ResultView, name: str, roots: str) -> Figure:
@@ -180,7 +183,7 @@ def _draw_direction_arrow(axes: Axes, w: Complex, colour: str) -> None:
     axes.annotate("", xy=end, xytext=start, arrowprops=arrow)
 
 
-def threshold_text(threshold: LocatedThreshold) -> str:
+def threshold_symbol_and_force(threshold: LocatedThreshold) -> str:
     """Symbol and force of a threshold, as text."""
     word, _ = THRESHOLD_LOOKS[threshold.kind]
     return f"{word} ={NO_BREAK_SPACE}{threshold.position:#.{THRESHOLD_DIGITS}g}"
@@ -209,7 +212,11 @@ def mark_thresholds(
     thresholds = [threshold for threshold in located if isinstance(threshold, LocatedThreshold)]
     for threshold in thresholds:
         _, dashes = THRESHOLD_LOOKS[threshold.kind]
-        label = threshold_text(threshold) if has_own_legend else THRESHOLD_WORDS[threshold.kind]
+        label = (
+            threshold_symbol_and_force(threshold)
+            if has_own_legend
+            else THRESHOLD_LEGEND_ENTRIES[threshold.kind]
+        )
         axes.axvline(threshold.position, ls=dashes, label=label, **THRESHOLD_LINE_STYLE)
     # The shaded range begins at the upper end of a bracketed Hopf point, and ends at the lower end of a
     # bracketed restabilization.

@@ -103,7 +103,7 @@ CROSSING_MARKS = {
     "restabilization": (style.GREEN, "^", "restabilization"),
 }
 """(colour, marker, legend entry) of each kind of crossing that is marked."""
-BAR_WIDTH = 0.8
+BAR_WIDTH_OVER_SPACING = 0.8
 """Width of a bar, as a fraction of the distance between bars."""
 BAR_ASPECT = 0.12
 """Ratio of height to width of a panel with a single bar."""
@@ -135,9 +135,9 @@ def draw_class_bars(view: ResultView) -> Figure:
 
 
 def classes_over_force(view: ResultView, rod: int) -> Iterator[tuple[float, float, str]]:
-    """Yields (start, end, class) of each interval of F between crossings, from F = 0 to the end of the
-    search. The first interval has the class "monotone"; the last is "not stored" if the file has no room for
-    all crossings."""
+    """Yields (start, end, class) of each interval of F between crossings of the rod with the index `rod`,
+    from F = 0 to the end of the search. The first interval has the class "monotone"; the last is "not stored"
+    if the file has no room for all crossings."""
     names = ("crossing_kind", "crossing_F", "unstable_after")
     kinds, F, counts = (view.flattened_by_point(name)[rod] for name in names)
     largest_force = float(view.variables["F_end"].ravel()[rod])
@@ -155,7 +155,8 @@ def classes_over_force(view: ResultView, rod: int) -> Iterator[tuple[float, floa
 
 
 def draw_class_bar(axes: Axes, view: ResultView, rod: int, is_vertical: bool) -> None:
-    """Draws the bar along F of the rod with the index `rod`, coloured by stability class."""
+    """Draws the bar along F of the rod with the index `rod`, coloured by stability class. is_vertical:
+    whether F is on the vertical axis."""
     intervals = list(classes_over_force(view, rod))
     undecided_from, undecided_to = (view.flattened_by_point(name)[rod] for name in ("open_from", "open_to"))
     if np.isfinite(undecided_from):
@@ -163,15 +164,16 @@ def draw_class_bar(axes: Axes, view: ResultView, rod: int, is_vertical: bool) ->
     for start, end, word in intervals:
         look = CLASS_EDGE_LOOK | {"fc": CLASS_COLOURS[word], "label": LEGEND_ENTRIES.get(word, word)}
         if is_vertical:
-            axes.bar(rod + 1, end - start, BAR_WIDTH, bottom=start, **look)
+            axes.bar(rod + 1, end - start, BAR_WIDTH_OVER_SPACING, bottom=start, **look)
         else:
-            axes.barh(0, end - start, BAR_WIDTH, left=start, **look)
+            axes.barh(0, end - start, BAR_WIDTH_OVER_SPACING, left=start, **look)
 
 
 def mark_thresholds_on_bars(
     axes: Axes, view: ResultView, is_vertical: bool, unit: str = "", factor: float = 1.0
 ) -> None:
-    """Marks the thresholds of all bars. The legend entries of a single rod contain the forces.
+    """Marks the thresholds of all bars. The legend entries of a horizontal bar, of a single rod, contain the
+    forces. is_vertical: as in `draw_class_bar`.
 
     unit: unit of the loads in legend entries; empty for F. factor: load at F = 1, in this unit.
     """

@@ -26,7 +26,8 @@ CRITICALITY_LOOKS = {
     1: ("subcritical Hopf points", 1.4, "--"),
     0: ("Hopf points, criticality undecided", 0.6, "-"),
 }
-"""(legend entry, width, style) of parts of a Hopf curve, by sign of Re c."""
+"""(legend entry, width, style) of parts of a Hopf curve, by sign of Re c (c: cubic coefficient of the normal
+form)."""
 DOUBLE_EIGENVALUE_LOOK = ("double eigenvalue", 1.0, ":")
 """(legend entry, width, style) of double eigenvalues in figures whose dashed curves are subcritical."""
 CYCLE_CURVE_STYLES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", GREEN)}
@@ -38,7 +39,7 @@ SPECIAL_POINT_MARKS_ON_ROWS = {
     "period_doubling": ("period doublings of cycles", "v"),
 }
 """(legend entry, marker) of special points of cycles on rows that lie on no curve, by kind."""
-CURVE_TOLERANCE = 1e-3
+POINT_ON_CURVE_TOLERANCE = 1e-3
 """A point lies on a curve if its distances from the curve along x and y, in fractions of the axes, are at
 most this number."""
 
@@ -55,12 +56,13 @@ def draw_boundary_curves(axes: Axes, view: ResultView, parameters: PlaneParamete
             for path in points_by_curve(view, parameters, "curve", kind).values():
                 axes.plot(*path.T, style, color="k", lw=width, label=label)
     if not hopf_only:
-        _mark_curve_folds(axes, view, parameters)
-        _mark_partial_beam_fold(axes, view, parameters)
+        _mark_hopf_curve_folds(axes, view, parameters)
+        _mark_fold_of_partial_beam_limit(axes, view, parameters)
 
 
 def _draw_hopf_curves_by_criticality(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
-    """Draws Hopf curves with line styles by criticality, generalised Hopf points, and curves of these."""
+    """Draws Hopf curves with line styles by criticality, generalised Hopf points, and curves of such
+    points."""
     variables = view.variables
     for curve in np.unique(variables["curve_number"][variables["curve_kind"] == 1]):
         for criticality, points in hopf_curve_parts_by_criticality(view, int(curve), parameters):
@@ -90,7 +92,8 @@ def _draw_bautin_curves(axes: Axes, view: ResultView, parameters: PlaneParameter
 def hopf_curve_parts_by_criticality(
     view: ResultView, curve: int, parameters: PlaneParameters
 ) -> list[tuple[int, Array]]:
-    """(sign of Re c, points, (n, 2)) of parts of a Hopf curve between generalised Hopf points."""
+    """(sign of Re c, points, (n, 2)) of the parts, between generalised Hopf points, of the Hopf curve with
+    the number `curve`."""
     variables = view.variables
     indices = np.flatnonzero(variables["curve_number"] == curve)
     bautin = np.flatnonzero(variables["bautin_curve"] == curve)
@@ -109,7 +112,7 @@ def hopf_curve_parts_by_criticality(
     return [(int(signs[part[0]]), points[part[0] : part[-1] + 2]) for part in parts if part.size]
 
 
-def _mark_curve_folds(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
+def _mark_hopf_curve_folds(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
     """Marks the folds of Hopf curves at which a window of flutter closes."""
     variables = view.variables
     closes_window = (variables["fold_kind"] == 1) & (variables["fold_of"] == 1)
@@ -119,7 +122,7 @@ def _mark_curve_folds(axes: Axes, view: ResultView, parameters: PlaneParameters)
         axes.plot(x, y, "ko", ms=4, label=label)
 
 
-def _mark_partial_beam_fold(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
+def _mark_fold_of_partial_beam_limit(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
     """Marks the fold in the partial beam limit, if it lies in the plane."""
     if "partial_beam_k1" not in view.variables:
         return
@@ -140,7 +143,7 @@ def draw_cycle_curves(axes: Axes, view: ResultView, parameters: PlaneParameters)
 
 
 def mark_special_points_on_rows(axes: Axes, view: ResultView, parameters: PlaneParameters) -> None:
-    """Marks the special points of cycles on rows that lie on no curve."""
+    """Marks, on the rows, the special points of cycles that lie on no curve of their kind."""
     row_values = view.point_columns[parameters.row_parameter]
     kinds, positions = (
         view.flattened_by_point(f"cycle_special_{name}") for name in ("kind", parameters.line_parameter)
@@ -158,14 +161,17 @@ def mark_special_points_on_rows(axes: Axes, view: ResultView, parameters: PlaneP
 def _is_on_curve(
     view: ResultView, kind: int, parameters: PlaneParameters, points: Array
 ) -> NDArray[np.bool_]:
-    """Mask of the special points, (n, 2), that lie on a curve of their kind `kind`."""
+    """Mask, (n,), of the special points `points`, (n, 2), that lie on a curve of the kind with the code
+    `kind`."""
     is_near = np.zeros(len(points), dtype=bool)
     if "cycle_curve_number" not in view.variables:
         return is_near
     rows = view.point_columns[parameters.row_parameter]
     plane = DrawnPlane(view.variables[parameters.line_parameter], rows[np.isfinite(rows)])
     centres = plane.fractions_of_axes(*points.T)
-    boxes = [Bbox([centre - CURVE_TOLERANCE, centre + CURVE_TOLERANCE]) for centre in centres]
+    boxes = [
+        Bbox([centre - POINT_ON_CURVE_TOLERANCE, centre + POINT_ON_CURVE_TOLERANCE]) for centre in centres
+    ]
     for path in points_by_curve(view, parameters, "cycle_curve", kind).values():
         curve = CurvePath(plane.fractions_of_axes(*path.T))
         is_near |= [curve.intersects_bbox(box, filled=False) for box in boxes]

@@ -55,17 +55,17 @@ class DrawnPlane:
 
 @dataclass(frozen=True, slots=True)
 class ClassifiedPoints:
-    """Points with known classes. coordinates: fractions of the axes, (n, 2). classes: (n,)."""
+    """Points with known classes. axis_fractions: fractions of the axes, (n, 2). classes: (n,)."""
 
-    coordinates: Array
+    axis_fractions: Array
     classes: NDArray[Any]
 
     def points_and_regions_inside(self, regions: NDArray[Any]) -> tuple["ClassifiedPoints", NDArray[Any]]:
         """Returns (points inside the plane, number of the region of each of these points). regions: number of
         the region of each pixel, (PIXEL_COUNT, PIXEL_COUNT)."""
-        is_inside = ((self.coordinates >= 0) & (self.coordinates <= 1)).all(axis=1)
-        inside = ClassifiedPoints(self.coordinates[is_inside], self.classes[is_inside])
-        return inside, regions[tuple(_pixels_of_points(inside.coordinates).T)]
+        is_inside = ((self.axis_fractions >= 0) & (self.axis_fractions <= 1)).all(axis=1)
+        inside = ClassifiedPoints(self.axis_fractions[is_inside], self.classes[is_inside])
+        return inside, regions[tuple(_pixels_of_points(inside.axis_fractions).T)]
 
 
 def pixel_classes(
@@ -77,10 +77,10 @@ def pixel_classes(
 ) -> NDArray[Any]:
     """Class of each pixel, (PIXEL_COUNT, PIXEL_COUNT): the class of the nearest point in the same region.
 
-    The lowest row of pixels comes first. row_points: points that are used in regions without a computed
-    point. curves: boundaries as fractions of the axes, (m, 2) each. closed: mask of pixels that belong to no
-    region, (PIXEL_COUNT, PIXEL_COUNT). A region without any point has the class `undecided`, or, if the lines
-    over its boundary cover it, the class of the nearest computed point.
+    The lowest row of pixels comes first. row_points: points that are used in regions without a point of
+    `computed`. curves: boundaries as fractions of the axes, (m, 2) each. closed: mask of pixels that belong
+    to no region, (PIXEL_COUNT, PIXEL_COUNT). A region without any point has the class `undecided`, or, if the
+    lines over its boundary cover it, the class of the nearest computed point.
     """
     walls = scipy.ndimage.binary_dilation(closed)
     for curve in curves:
@@ -101,9 +101,11 @@ def pixel_classes(
         for source, of_region in sources:
             if of_region is None and is_visible:
                 break
-            is_inside = np.full(len(source.coordinates), True) if of_region is None else of_region == region
+            is_inside = (
+                np.full(len(source.axis_fractions), True) if of_region is None else of_region == region
+            )
             if is_inside.any():
-                known = (source.coordinates[is_inside], source.classes[is_inside])
+                known = (source.axis_fractions[is_inside], source.classes[is_inside])
                 table[pixels] = _nearest_classes(pixels, *known)
                 break
     if walls.any() and not walls.all():

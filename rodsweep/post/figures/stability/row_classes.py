@@ -19,7 +19,7 @@ CLASS_WORDS = {"class": STABILITY_CLASSES, "stable_states": STABLE_STATES}
 """(code, word) of the values of the variables `class` and `stable_states`, by variable."""
 ONSET_CODE = CROSSING_KINDS.index("onset")
 """Code of an onset of oscillations."""
-MIN_DISTANCE_FROM_CLASS_CHANGE = 1e-9
+MIN_RELATIVE_CLASS_CHANGE_DISTANCE = 1e-9
 """A point closer to a change of class than this relative distance is not used, because its class is
 uncertain."""
 STABLE_CLASS_ABOVE_CROSSING = {
@@ -38,9 +38,9 @@ def classes_between_crossings(
     """Returns (x, y, classes), (n,) each, of the midpoints between neighbouring crossings on rows, and of
     the midpoints of the two outer parts, which end at the ends of the row or where the force crushes the rod.
 
-    x, y: values of the parameters along a row, and constant on a row. The class of a midpoint is known even
-    if the crossings are close. The first part has a midpoint only before an onset of a stable rod, and the
-    last part only if all crossings are stored. Rows at infinity are left out.
+    x: values of the parameter along a row. y: values of the parameter that is constant on a row. The class of
+    a midpoint is known even if the crossings are close. The first part has a midpoint only before an onset of
+    a stable rod, and the last part only if all crossings are stored. Rows at infinity are left out.
     """
     names = ("crossing_kind", "unstable_after", "crossing_at", "crossing_count", "open_from")
     kinds, unstable_counts, positions, counts, undecided_from = map(view.flattened_by_point, names)
@@ -70,15 +70,16 @@ def classes_between_crossings(
 def _uncrushed_range_of_row(
     view: ResultView, material: RodMaterial, parameters: PlaneParameters, index: int
 ) -> tuple[float, float]:
-    """First and last value on a row at which the force does not crush the rod."""
+    """Returns (first, last) value, on the row with the index `index`, at which the force does not crush the
+    rod."""
     rod = {name: float(column[index]) for name, column in view.point_columns.items()}
     row_start, row_end = list_of(view.variables[parameters.line_parameter][[0, -1]])
     return uncrushed_interval(material, rod, (parameters.line_parameter, row_start, row_end))
 
 
 def class_above_crossing(kind: int, unstable: int) -> str:
-    """Class of a rod at F just above a crossing. unstable: number of unstable modes above the crossing; -1 if
-    unknown."""
+    """Class of a rod at F just above a crossing. kind: index of the kind in CROSSING_KINDS. unstable: number
+    of unstable modes above the crossing; -1 if unknown."""
     stable = STABLE_CLASS_ABOVE_CROSSING.get(CROSSING_KINDS[kind], "undecided")
     if unstable > 0:
         return "flutter"
@@ -88,15 +89,15 @@ def class_above_crossing(kind: int, unstable: int) -> str:
 def pixel_classes_of_row(
     view: ResultView, variable: str, parameters: PlaneParameters, index: int, pixel_edges: Array
 ) -> NDArray[np.intp]:
-    """Class of each pixel of a row of a diagram, (n,). variable: `class` or `stable_states`. pixel_edges:
-    edges of the pixels, (n + 1,).
+    """Class of each pixel of the row with the index `index` in a diagram, (n,). variable: `class` or
+    `stable_states`. pixel_edges: edges of the pixels, (n + 1,).
 
     A pixel has the class of the nearest computed point between the same two changes of class; "undecided" if
     there is no such point.
     """
     x = view.variables[parameters.line_parameter]
     classes = view.flattened_by_point(variable)[index]
-    changes = _class_changes(view, variable, parameters, index)
+    changes = _class_change_positions(view, variable, parameters, index)
     if variable == "class":
         positions, rows, classified = classes_between_crossings(view, parameters)
         is_in_row = rows == view.parameter_values[parameters.row_parameter][index]
@@ -104,7 +105,7 @@ def pixel_classes_of_row(
         classes = np.append(classes, classified[is_in_row])
     decided = np.abs(x[:, None] - changes).min(
         axis=1, initial=np.inf
-    ) > MIN_DISTANCE_FROM_CLASS_CHANGE * np.abs(x)
+    ) > MIN_RELATIVE_CLASS_CHANGE_DISTANCE * np.abs(x)
     pixels = (pixel_edges[1:] + pixel_edges[:-1]) / 2
     piece_of_pixels = np.searchsorted(changes, pixels)
     piece_of_points = np.searchsorted(changes, x)
@@ -120,9 +121,11 @@ def pixel_classes_of_row(
     return classified
 
 
-def _class_changes(view: ResultView, variable: str, parameters: PlaneParameters, index: int) -> Array:
-    """Positions of the changes of class along a row, in increasing order, (m,). variable: `class` or
-    `stable_states`."""
+def _class_change_positions(
+    view: ResultView, variable: str, parameters: PlaneParameters, index: int
+) -> Array:
+    """Positions of the changes of class along the row with the index `index`, in increasing order, (m,).
+    variable: `class` or `stable_states`."""
     names = ("crossing_at", "crossing_kind", f"cycle_special_{parameters.line_parameter}")
     values_by_name = {name: view.flattened_by_point(name)[index] for name in names if name in view.variables}
     positions = values_by_name["crossing_at"]

@@ -26,7 +26,7 @@ FILE_COLOURS = (*style.LINE_COLOURS[:5], "0.3")
 """Colours of the files in a figure of several files."""
 THRESHOLD_LINE_LOOK: dict[str, Any] = {"ms": 3, "lw": 1.2}
 """Matplotlib style of all lines of thresholds."""
-LINE_STYLES = ("-", "--", ":")
+SECOND_PARAMETER_LINE_STYLES = ("-", "--", ":")
 """Line styles for the values of the second parameter in one panel."""
 MAX_COLOURED_LINES = 6
 """Largest number of values of the second parameter that have distinguishable colours."""
@@ -34,7 +34,7 @@ DARKEST_SHADE = 0.0
 """Start of the used range of the colour map."""
 LIGHTEST_SHADE = 0.85
 """End of the used range of the colour map; lighter colours are invisible on white paper."""
-MIN_DISTINCT_LINE_DISTANCE = 0.01
+MIN_RELATIVE_LINE_DISTANCE = 0.01
 """Two lines are drawn as one line if their distance, divided by the largest force, is below this number."""
 FORCE_AXIS_MARGIN_FACTOR = 1.05
 """Upper limit of the axis of forces divided by the largest force; on a logarithmic axis also the smallest
@@ -57,7 +57,7 @@ def draw_lines_of_grid(view: ResultView, names: list[str], search: str) -> tuple
         _add_threshold_kind_entries(axes, np.concatenate(table, axis=1))
         for value, values, shade in zip(view.parameter_values[second_name], table, shades, strict=True):
             label = f"${style.TEX_SYMBOLS[second_name]} = {style.number_in_tex(float(value))}$"
-            _draw_coloured_lines(axes, x, values, shade, label)
+            _draw_lines_in_one_colour(axes, x, values, shade, label)
     else:
         _draw_lines_by_kind(axes, x, table[0], ls="-")
     _label_axes(axes, view, x_name, table)
@@ -78,7 +78,7 @@ def draw_lines_of_files(views: Sequence[ResultView], x_name: str, search: str) -
     _add_threshold_kind_entries(axes, forces)
     for view, values, colour in zip(views, tables, FILE_COLOURS, strict=False):
         label = style.file_label(view, views)
-        _draw_coloured_lines(axes, _abscissa_values(view, x_name), values, colour, label)
+        _draw_lines_in_one_colour(axes, _abscissa_values(view, x_name), values, colour, label)
     longest = max(views, key=lambda view: len(view.parameter_values[x_name]))
     _label_axes(axes, longest, x_name, forces)
     forces = np.sort(forces[np.isfinite(forces)])
@@ -96,14 +96,14 @@ def draw_lines_of_three_values(
     view: ResultView, names: list[str], is_narrow: bool, search: str
 ) -> tuple[Figure, str]:
     """Returns (figure, description). As in the paper's Fig. 3, the figure has a panel for each of the two
-    parameters `names` as abscissa, with curves for some values of the second parameter. search: clause on the
-    searched range."""
+    parameters `names` as abscissa, with curves for some values of the second parameter. is_narrow: whether
+    the panels are stacked. search: clause on the searched range."""
     row_count, column_count = (2, 1) if is_narrow else (1, 2)
     figure = Figure(figsize=(4.6 * column_count + 0.4, 4.0 * row_count), layout="constrained")
     panels = figure.subplots(row_count, column_count, sharey=True, squeeze=False).ravel()
     texts = []
     for panel, x_name, second_name in zip(panels, names, reversed(names), strict=True):
-        line_count = _draw_lines_of_three_values(panel, view, x_name, second_name)
+        line_count = _draw_lines_of_up_to_three_values(panel, view, x_name, second_name)
         texts.append(f"{line_count} of {len(view.parameter_values[second_name])} values of {second_name}")
         if is_narrow or panel is panels[0]:
             panel.set_ylabel(style.CRITICAL_FORCE_LABEL)
@@ -114,7 +114,7 @@ def draw_lines_of_three_values(
     return figure, f"critical forces against {' and '.join(names)}, {lines}{omissions_clause}"
 
 
-def _draw_lines_of_three_values(panel: Axes, view: ResultView, x_name: str, second_name: str) -> int:
+def _draw_lines_of_up_to_three_values(panel: Axes, view: ResultView, x_name: str, second_name: str) -> int:
     """Draws thresholds against the parameter `x_name` for up to three different values of the parameter
     `second_name`, see `_first_middle_and_last_line`, with a legend of these values above the panel; returns
     the number of values."""
@@ -122,7 +122,7 @@ def _draw_lines_of_three_values(panel: Axes, view: ResultView, x_name: str, seco
     indices = _first_middle_and_last_line(table)
     groups = _groups_of_equal_lines({index: table[index] for index in indices})
     entries = []
-    for line_style, group in zip(LINE_STYLES, groups, strict=False):
+    for line_style, group in zip(SECOND_PARAMETER_LINE_STYLES, groups, strict=False):
         _draw_lines_by_kind(panel, _abscissa_values(view, x_name), table[group[0]], ls=line_style, ms=2)
         values = view.parameter_values[second_name][group]
         text = f"${style.TEX_SYMBOLS[second_name]} = " + ", ".join(
@@ -145,8 +145,8 @@ def _first_force_table(view: ResultView, x_name: str) -> Array:
 
 
 def _abscissa_values(view: ResultView, x_name: str) -> Array:
-    """Values on the horizontal axis: values of the parameter `x_name`, or 1/gamma3 instead of gamma3, as in
-    the paper."""
+    """Values on the horizontal axis, (n,): values of the parameter `x_name`, or 1/gamma3 instead of gamma3,
+    as in the paper."""
     values = view.parameter_values[x_name]
     return 1 / values if x_name == "gamma3" else values
 
@@ -166,7 +166,7 @@ def _draw_lines_by_kind(axes: Axes, x: Array, values: Array, **look: Any) -> Non
             axes.plot(x[is_finite], forces[is_finite], **keywords)
 
 
-def _draw_coloured_lines(axes: Axes, x: Array, values: Array, colour: Any, label: str) -> None:
+def _draw_lines_in_one_colour(axes: Axes, x: Array, values: Array, colour: Any, label: str) -> None:
     """Draws lines of the three kinds of thresholds in one colour, with one legend entry. x, values: see
     `_draw_lines_by_kind`."""
     _draw_lines_by_kind(axes, x, values, color=colour, label=None)
@@ -180,7 +180,7 @@ def _add_threshold_kind_entries(axes: Axes, values: Array) -> None:
 
 def _label_axes(axes: Axes, view: ResultView, x_name: str, table: Array) -> None:
     """Labels the horizontal axis, of the parameter `x_name`, and sets the scales. The axis of forces starts
-    at 0."""
+    at 0. table: drawn forces, of any shape, NaN for a missing force."""
     x = _abscissa_values(view, x_name)
     style.scale_axis(axes, "x", np.sort(x[np.isfinite(x)]))
     axes.set_xlabel(style.INVERSE_DRAG_LABEL if x_name == "gamma3" else style.AXIS_LABELS[x_name])
@@ -221,7 +221,7 @@ def _groups_of_equal_lines(lines: dict[int, Array]) -> list[list[int]]:
             same_gaps = np.isnan(values) == np.isnan(first)
             if (
                 same_gaps.all()
-                and np.nanmax(np.abs(values - first), initial=0.0) < MIN_DISTINCT_LINE_DISTANCE * size
+                and np.nanmax(np.abs(values - first), initial=0.0) < MIN_RELATIVE_LINE_DISTANCE * size
             ):
                 group.append(number)
                 break

@@ -7,17 +7,17 @@ import numpy as np
 
 from ....config.arm.status import NOT_SLENDER
 from ....model.arm.neglected import Validity
-from ....model.arm.quantities import LOAD_SCALE_NAMES, UNITS_AND_EXAMPLES
+from ....model.arm.quantities import LOAD_SCALE_NAME_BY_LOAD, UNITS_AND_EXAMPLES
 from ....results.layouts.si_variables import VALIDITY_VARIABLES
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import counted
-from ..selection import Selection
+from ..selection import PointSelection
 from .arm_texts import errors_in_si, range_text_in_printing_unit
 from .load_lines import (
     MAX_ANSWER_DIGITS,
     arm_index_apart_from_drag,
     compression_lines,
-    drag_lines,
+    drag_variation_lines,
     extreme_arms_text,
     flutter_force_line,
 )
@@ -40,7 +40,7 @@ THRESHOLD_SEARCH_TASKS = ("thresholds", "criticality", "branch", "phase_diagram"
 """Tasks that search for thresholds, which may fail."""
 
 
-def arm_answer(points: Selection) -> TextLines:
+def arm_answer(points: PointSelection) -> TextLines:
     """Lines with the answer about the arms at the computed points; empty for a rod."""
     view = points.view
     if not view.quantities:
@@ -53,7 +53,7 @@ def arm_answer(points: Selection) -> TextLines:
     ]
 
 
-def _validity_and_answer_lines(points: Selection, arms: Selection) -> TextLines:
+def _validity_and_answer_lines(points: PointSelection, arms: PointSelection) -> TextLines:
     """Line on the validity of the model, and lines with the answer for the arms to which it applies; for all
     arms if it applies to none. points: all computed points. arms: the points with a rod of the model."""
     if not arms.count:
@@ -71,8 +71,8 @@ def _validity_and_answer_lines(points: Selection, arms: Selection) -> TextLines:
     return [caveat, *answer] if validity["model_applies"].any() else [*answer[:1], caveat, *answer[1:]]
 
 
-def _task_lines(arms: Selection) -> TextLines:
-    """Lines with the answer of the task, for searches with a line on those that failed."""
+def _task_lines(arms: PointSelection) -> TextLines:
+    """Lines with the answer of the task; for searches, also a line on the searches that failed."""
     task = arms.view.task
     failed = arms.with_status(FAILED_STATUS)
     if task not in THRESHOLD_SEARCH_TASKS or not failed.count:
@@ -83,24 +83,24 @@ def _task_lines(arms: Selection) -> TextLines:
 
 
 def range_text_in_typed_unit(
-    arms: Selection, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0
+    arms: PointSelection, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0
 ) -> str:
     """Range of `values`, in the SI unit `si`, as text in the unit that the user typed. errors:
     absolute errors, of the shape of `values`, or 0."""
     return range_text_in_printing_unit(arms.view, values, si, errors, MAX_ANSWER_DIGITS)
 
 
-def si_load_range_text(arms: Selection, loads: np.ndarray) -> str:
+def si_load_range_text(arms: PointSelection, loads: np.ndarray) -> str:
     """Range of the loads `loads`, (n,) in SI units, as text in the unit that the user typed."""
     return range_text_in_typed_unit(arms, loads, UNITS_AND_EXAMPLES[arms.view.load_kind][0])
 
 
-def _point_count_clause(part: Selection, arms: Selection) -> str:
-    """Clause on the number of points of the part; empty if there is one arm only."""
+def _point_count_clause(part: PointSelection, arms: PointSelection) -> str:
+    """Clause on the number of points of `part` among those of `arms`; empty if `arms` has one point."""
     return f" at {part.count} of {arms.count} points" if arms.count > 1 else ""
 
 
-def _threshold_lines(arms: Selection) -> TextLines:
+def _threshold_lines(arms: PointSelection) -> TextLines:
     """Lines about flutter, extreme arms, effect of drag, onset of oscillation and return to stability."""
     load = arms.view.load_kind
     names = (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz")
@@ -109,7 +109,7 @@ def _threshold_lines(arms: Selection) -> TextLines:
     if np.isfinite(flutter).sum() > 1:
         extremes_text = extreme_arms_text(arms, flutter, "smallest flutter load")
         lines += [extremes_text] if extremes_text else []
-        lines += drag_lines(arms, {"flutter": names[0], "its frequency": names[2]})
+        lines += drag_variation_lines(arms, {"flutter": names[0], "its frequency": names[2]})
     lines += flutter_force_line(arms)
     onset, restabilized = (arms.values(f"{load}_{event}") for event in ("onset", "restabilization"))
     if arms.count > 1 and np.isfinite(onset).any():
@@ -121,9 +121,10 @@ def _threshold_lines(arms: Selection) -> TextLines:
     return lines
 
 
-def _flutter_lines(arms: Selection, loads: np.ndarray, ends: np.ndarray, frequency: np.ndarray) -> TextLines:
-    """Lines about flutter. loads: flutter loads. ends: largest searched loads. frequency: in Hz. All
-    (n,)."""
+def _flutter_lines(
+    arms: PointSelection, loads: np.ndarray, ends: np.ndarray, frequency: np.ndarray
+) -> TextLines:
+    """Lines about flutter. loads: flutter loads. ends: largest searched loads. frequency: in Hz. All (n,)."""
     flutter_count = int(np.isfinite(loads).sum())
     search = f" up to {si_load_range_text(arms, ends)}" if np.isfinite(ends).any() else ""
     if not flutter_count:
@@ -136,7 +137,7 @@ def _flutter_lines(arms: Selection, loads: np.ndarray, ends: np.ndarray, frequen
     return lines
 
 
-def _first_hopf_lines(arms: Selection) -> TextLines:
+def _first_hopf_lines(arms: PointSelection) -> TextLines:
     """Lines about loads and frequencies at the first Hopf points."""
     load = arms.view.load_kind
     return _flutter_lines(
@@ -147,13 +148,15 @@ def _first_hopf_lines(arms: Selection) -> TextLines:
     )
 
 
-def _first_hopf_lines_of_rows(arms: Selection) -> TextLines:
+def _first_hopf_lines_of_rows(arms: PointSelection) -> TextLines:
     """Lines about loads and frequencies at the first Hopf points of rows along F; empty for rows along
     another parameter."""
     view = arms.view
     if "F" in view.parameters:
         return []
-    scale = np.broadcast_to(view.variables[LOAD_SCALE_NAMES[view.load_kind]], arms.mask.shape)[arms.mask]
+    scale = np.broadcast_to(view.variables[LOAD_SCALE_NAME_BY_LOAD[view.load_kind]], arms.mask.shape)[
+        arms.mask
+    ]
     last_force = np.minimum(view.variables["F"][-1], view.point_columns["k1"][arms.mask.ravel()])
     forces = _values_at_first_hopf_point(arms, "crossing_at")
     return _flutter_lines(
@@ -161,7 +164,7 @@ def _first_hopf_lines_of_rows(arms: Selection) -> TextLines:
     )
 
 
-def _values_at_first_hopf_point(arms: Selection, name: str) -> np.ndarray:
+def _values_at_first_hopf_point(arms: PointSelection, name: str) -> np.ndarray:
     """Values of the variable `name` at the first Hopf point of each arm, (n,); NaN for an arm without a Hopf
     point."""
     is_hopf = arms.values("crossing_kind") == CROSSING_KINDS.index("hopf")
@@ -169,7 +172,7 @@ def _values_at_first_hopf_point(arms: Selection, name: str) -> np.ndarray:
     return np.where(is_hopf.any(axis=-1), arms.values(name)[first_hopf], np.nan)
 
 
-def _cycle_lines(arms: Selection) -> TextLines:
+def _cycle_lines(arms: PointSelection) -> TextLines:
     """Lines about frequency, amplitude and effect of drag of limit cycles; if there is no cycle, about
     the outcomes."""
     cycles = arms.with_status("cycle")
@@ -186,12 +189,12 @@ def _cycle_lines(arms: Selection) -> TextLines:
     count_clause = _point_count_clause(cycles, arms)
     motion = f"beats{count_clause} at {frequency_text}, its tip by {height_text} to either side"
     names = {"frequency": "frequency_hz", "reach of the tip": "tip_y_max_si", "power": "injection_mean_si"}
-    return [motion, *_drag_outcome_line(arms), *drag_lines(cycles, names)]
+    return [motion, *_drag_outcome_line(arms), *drag_variation_lines(cycles, names)]
 
 
-def _drag_outcome_line(arms: Selection) -> TextLines:
-    """Line with the numbers of arms (with load) that beat for all, some or no drags of their range. Empty
-    list if drag is not varied or an outcome is undecided."""
+def _drag_outcome_line(arms: PointSelection) -> TextLines:
+    """Line with the numbers of combinations of arm and load that beat with all drags, only with some, or
+    never. Empty list if drag is not varied or an outcome is undecided."""
     arm_indices = arm_index_apart_from_drag(arms.view)
     if arm_indices is None or arms.with_status("cycle", "straight").count < arms.count:
         return []
@@ -206,7 +209,7 @@ def _drag_outcome_line(arms: Selection) -> TextLines:
     return [f"of {counted(len(by_arm), 'combination')} of arm and load: beats {counts_text}"]
 
 
-def _mode_lines(arms: Selection) -> TextLines:
+def _leading_mode_lines(arms: PointSelection) -> TextLines:
     """Lines about stability and leading frequency of the straight arms."""
     unstable_count = arms.variables["unstable_count"]
     unstable = arms.where(unstable_count > 0)
@@ -223,7 +226,7 @@ def _mode_lines(arms: Selection) -> TextLines:
     return lines
 
 
-def _branch_lines(arms: Selection) -> TextLines:
+def _branch_lines(arms: PointSelection) -> TextLines:
     """Lines about loads and frequencies of cycles on branches."""
     loads = arms.values(f"branch_{arms.view.load_kind}")
     if not np.isfinite(loads).any():
@@ -235,13 +238,13 @@ def _branch_lines(arms: Selection) -> TextLines:
     return [f"cycles, stable or not, exist at {si_load_range_text(arms, loads)}; they beat at {rate_text}"]
 
 
-ANSWER_LINES_BY_TASK: dict[str, Callable[[Selection], TextLines]] = {
-    "spectrum": _mode_lines,
-    "modes": _mode_lines,
+ANSWER_LINES_BY_TASK: dict[str, Callable[[PointSelection], TextLines]] = {
+    "spectrum": _leading_mode_lines,
+    "modes": _leading_mode_lines,
     "thresholds": _threshold_lines,
     "criticality": _first_hopf_lines,
     "limit_cycle": _cycle_lines,
     "branch": _branch_lines,
     "phase_diagram": _first_hopf_lines_of_rows,
 }
-"""For each task, the function of the arms that returns the lines of the answer."""
+"""For each task, the function that returns the lines of the answer about the arms."""

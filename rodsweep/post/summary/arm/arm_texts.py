@@ -13,7 +13,7 @@ from ....model.arm.quantities import (
     ARM_FILE_VARIABLES,
     ARM_SCALES,
     LOAD_NAME_BY_RELATIVE_LOAD,
-    LOAD_SCALE_NAMES,
+    LOAD_SCALE_NAME_BY_LOAD,
     UNITS_AND_EXAMPLES,
 )
 from ....model.parameters import OPTIONAL_PARAMETER_NAMES
@@ -27,12 +27,12 @@ from ....results.layouts.variables import Variable
 from ...located_thresholds import LocatedThreshold
 from ...tables.rows_and_columns import arm_quantities_at_points
 from ..number_texts import MAX_RANGE_END_DIGITS, rounded_text, value_range_text
-from ..selection import Selection
+from ..selection import PointSelection
 from ..variable_errors import absolute_errors, known_values_mask
 
 MAX_VALUES_LISTED_ONE_BY_ONE = 4
 """Up to this number of values of an array are listed one by one; more values are printed as a range."""
-TYPED_UNIT_QUANTITIES = {"m": ("length",), "Pa": ("pressure", "young"), "N": ("force",)}
+QUANTITIES_BY_SI_UNIT = {"m": ("length",), "Pa": ("pressure", "young"), "N": ("force",)}
 """Quantities of the arm, by SI unit. All numbers with this SI unit are printed in the unit of the
 first of these quantities for which the user typed a unit."""
 UNITS_WITH_PREFIX = ("J", "W")
@@ -51,16 +51,16 @@ THRESHOLD_SENTENCES = {
 """Sentence on the load at a threshold of the straight arm, by kind of threshold."""
 
 
-def quantity_words(name: str) -> str:
+def printed_quantity_name(name: str) -> str:
     """Printed name of a quantity of an arm. name: key of the config."""
     return QUANTITY_WORDS.get(name, name.replace("_", " "))
 
 
-def printing_unit(view: ResultView, si: str, largest: float) -> tuple[float, str]:
-    """Returns (factor, unit): unit for printing numbers given in the SI unit `si`, and the factor that
-    converts the numbers to this unit. The unit is typed by the user, else, for energies, powers and short
-    times, it has a prefix suitable for numbers up to `largest`, else it is `si`."""
-    names = (name for name in TYPED_UNIT_QUANTITIES.get(si, ()) if name in view.typed_units)
+def factor_and_printing_unit(view: ResultView, si: str, largest: float) -> tuple[float, str]:
+    """Returns (factor, unit): the factor that converts numbers in the SI unit `si` to the unit in which they
+    are printed, and this unit. The unit is the unit that the user typed, if any, otherwise `si`; for
+    energies, powers and short times, with a prefix suitable for numbers up to `largest`."""
+    names = (name for name in QUANTITIES_BY_SI_UNIT.get(si, ()) if name in view.typed_units)
     unit = next((view.typed_units[name] for name in names), si)
     if unit != si:
         return value_in_unit(1.0, unit, si), unit
@@ -76,11 +76,11 @@ def range_text_in_printing_unit(
     errors: np.ndarray | float = 0.0,
     max_digits: int = MAX_RANGE_END_DIGITS,
 ) -> str:
-    """Range of `values`, in the SI unit `si`, as text in the unit of `printing_unit`.
+    """Range of `values`, in the SI unit `si`, as text in the unit of `factor_and_printing_unit`.
 
     errors: absolute errors, of the shape of the values, or 0, which limit the number of digits.
     """
-    factor, unit = printing_unit(view, si, _largest_absolute(values))
+    factor, unit = factor_and_printing_unit(view, si, _largest_absolute(values))
     errors_in_unit = np.broadcast_to(factor * errors, values.shape)
     return f"{value_range_text(factor * values, errors_in_unit, max_digits)} {unit}"
 
@@ -92,13 +92,14 @@ def _largest_absolute(values: np.ndarray) -> float:
 
 
 def varied_arm_quantities(view: ResultView) -> dict[str, np.ndarray]:
-    """Given quantities of an arm that differ between points of a file, by name: at all points, (points,)."""
+    """Given quantities of an arm that differ between points of a file, in SI units, by name: values at all
+    points, (points,)."""
     columns = arm_quantities_at_points(view).items()
     given = {name: column for name, column in columns if name not in ARM_SCALES}
     return {name: column for name, column in given.items() if len(np.unique(column[~np.isnan(column)])) > 1}
 
 
-def arm_quantity_ranges_text(points: Selection) -> str:
+def arm_quantity_ranges_text(points: PointSelection) -> str:
     """Ranges of an arm's quantities and of the taper over the points, as text; empty if all points of the
     file have the same arm."""
     view = points.view
@@ -125,18 +126,19 @@ def quantity_range_text(view: ResultView, name: str, column: np.ndarray, mask: n
         names = [DRAG_ESTIMATE_NAMES[int(index)] for index in np.unique(values)]
         return "" if len(names) == len(np.unique(column)) else f"drag {' and '.join(names)}".replace("_", " ")
     si = ARM_FILE_VARIABLES[name].unit
-    unit = "" if si == "1" else view.typed_units.get(name, printing_unit(view, si, 1.0)[1])
+    unit = "" if si == "1" else view.typed_units.get(name, factor_and_printing_unit(view, si, 1.0)[1])
     factor = value_in_unit(1.0, unit, si) if unit else 1.0
     ends = [float(f"{factor * end:.{POINT_QUANTITY_DIGITS}g}") for end in (values.min(), values.max())]
     range_text = " to ".join(f"{end:.{POINT_QUANTITY_DIGITS + 1}g}" for end in sorted(set(ends)))
     if name in LOAD_NAME_BY_RELATIVE_LOAD:
         return f"{range_text} of flutter"
-    return f"{quantity_words(name)} {range_text} {unit}".rstrip()
+    return f"{printed_quantity_name(name)} {range_text} {unit}".rstrip()
 
 
-def arm_variable_lines(points: Selection) -> list[str]:
-    """List with a line on the ranges of an arm's variables, in typed or SI units, without errors, crossings,
-    and (for several points) other lists. Empty list for a rod."""
+def arm_variable_lines(points: PointSelection) -> list[str]:
+    """List with a line on the ranges of an arm's variables, in the units of `factor_and_printing_unit`.
+    Errors and crossings are left out; for several points all lists are left out, too. Empty list for a
+    rod."""
     view = points.view
     if not view.quantities:
         return []
@@ -153,7 +155,7 @@ def arm_variable_lines(points: Selection) -> list[str]:
             largest[variable.units] = max(largest.get(variable.units, 0.0), _largest_absolute(column))
     rows = []
     for (name, variable), column in values.items():
-        factor, unit = printing_unit(view, variable.units, largest[variable.units])
+        factor, unit = factor_and_printing_unit(view, variable.units, largest[variable.units])
         errors = errors_in_si(view.variables, name, variable.name)[points.mask]
         numbers_text = _values_or_range_text(factor * column, factor * errors)
         rows.append(f"{variable.name.removesuffix('_si').removesuffix('_hz')} = {numbers_text} {unit}")
@@ -185,7 +187,7 @@ def load_range_text(view: ResultView, F: np.ndarray, points: np.ndarray) -> str:
     """Range of the loads for the dimensionless forces F, (n,), as text. points: index of the point of each
     force, (n,)."""
     load = view.load_kind
-    scale = _values_at_points(view.quantities[LOAD_SCALE_NAMES[load]], points)
+    scale = _values_at_points(view.quantities[LOAD_SCALE_NAME_BY_LOAD[load]], points)
     return range_text_in_printing_unit(view, F * scale, UNITS_AND_EXAMPLES[load][0])
 
 

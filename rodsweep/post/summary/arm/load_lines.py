@@ -6,11 +6,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from ....model.arm.neglected import COMPRESSION_LIMIT, DOUBTFUL_RATIO
-from ....model.arm.quantities import LOAD_SCALE_NAMES, UNITS_AND_EXAMPLES
+from ....model.arm.quantities import LOAD_SCALE_NAME_BY_LOAD, UNITS_AND_EXAMPLES
 from ....results.file.view import ResultView
 from ....wording import two_significant_digits
 from ...crushing import material_of_rods
-from ..selection import Selection
+from ..selection import PointSelection
 from .arm_texts import arm_quantity_ranges_text, range_text_in_printing_unit, varied_arm_quantities
 
 MAX_ANSWER_DIGITS = 3
@@ -19,16 +19,16 @@ VERDICTS_BY_COMPRESSION = {
     DOUBTFUL_RATIO: f"is more than {DOUBTFUL_RATIO:g} times its limit, and the model is doubtful",
     1.0: "exceeds its limit, and the model does not apply",
 }
-"""Verdict on the model, by the compression above which the verdict holds, as a fraction of its limit."""
+"""Verdict on the model, by the ratio of compression to its limit above which the verdict holds."""
 
 
-def flutter_force_line(arms: Selection) -> list[str]:
-    """Line with the range of the flutter forces at the tip, and with their extreme arms; empty if the load is
-    a force, and if no arm flutters.
+def flutter_force_line(arms: PointSelection) -> list[str]:
+    """Line with the range of the flutter forces at the tip, and the arms with the extreme forces; empty if
+    the load is a force, and if no arm flutters.
 
     Of two arms with tips of different size, the larger flutter pressure may be the smaller force.
     """
-    forces = (arms.variables["F_hopf"] * arms.variables[LOAD_SCALE_NAMES["force"]])[arms.mask]
+    forces = (arms.variables["F_hopf"] * arms.variables[LOAD_SCALE_NAME_BY_LOAD["force"]])[arms.mask]
     if arms.view.load_kind == "force" or not np.isfinite(forces).any():
         return []
     extremes_text = extreme_arms_text(arms, forces, "smallest")
@@ -36,20 +36,20 @@ def flutter_force_line(arms: Selection) -> list[str]:
     return [f"flutter as a force at the tip: {text}{f', {extremes_text}' if extremes_text else ''}"]
 
 
-def extreme_arms_text(arms: Selection, loads: np.ndarray, smallest: str) -> str:
+def extreme_arms_text(arms: PointSelection, loads: np.ndarray, smallest: str) -> str:
     """The arms with the smallest and with the largest of the loads, (n,), as text; empty for fewer than two
-    loads, and if both arms are described by the same text."""
+    loads, and if both arms are described by the same text. smallest: phrase before the first arm."""
     if np.isfinite(loads).sum() < 2:
         return ""
     indices = np.flatnonzero(arms.mask)
     ends = (indices[np.nanargmin(loads)], indices[np.nanargmax(loads)])
     first_text, last_text = (
-        arm_quantity_ranges_text(Selection(arms.view, np.arange(arms.mask.size) == end)) for end in ends
+        arm_quantity_ranges_text(PointSelection(arms.view, np.arange(arms.mask.size) == end)) for end in ends
     )
     return "" if first_text == last_text else f"{smallest} at {first_text}; largest at {last_text}"
 
 
-def drag_lines(arms: Selection, names: Mapping[str, str]) -> list[str]:
+def drag_variation_lines(arms: PointSelection, names: Mapping[str, str]) -> list[str]:
     """Line on the variation of variables over the drags of an arm; an empty list if drag does not vary.
     names: variables by printed name."""
     arm_indices = arm_index_apart_from_drag(arms.view)
@@ -83,7 +83,8 @@ def arm_index_apart_from_drag(view: ResultView) -> np.ndarray | None:
 
 def _largest_ratio_within_arm(values: np.ndarray, arm_indices: np.ndarray) -> float:
     """Maximum, over all arms, of the largest value of an arm divided by the smallest; NaN if no arm has two
-    positive values. arm_indices: index of the arm at each point, as from `arm_index_apart_from_drag`."""
+    or more values that are all positive. arm_indices: index of the arm at each point, as from
+    `arm_index_apart_from_drag`."""
     ratios = []
     for index in np.unique(arm_indices):
         arm_values = values[(arm_indices == index) & np.isfinite(values)]
@@ -92,24 +93,24 @@ def _largest_ratio_within_arm(values: np.ndarray, arm_indices: np.ndarray) -> fl
     return max(ratios, default=np.nan)
 
 
-def compression_lines(rows: Selection) -> list[str]:
-    """Lines with the ranges of loads above which compression makes the model doubtful on the rows of a phase
-    diagram, and above which it exceeds the limit; empty for other tasks, and if all loads of the rows are
-    smaller.
+def compression_lines(rows: PointSelection) -> list[str]:
+    """Lines about the rows of a phase diagram: one with the loads above which compression makes the model
+    doubtful, one with the loads above which compression exceeds its limit. A line is left out if all loads of
+    the rows are smaller; for other tasks the list is empty.
 
-    The validity of a row is that at its first Hopf point, and a row has larger loads. Rubber has no limit of
-    compression, because its law includes large compression. Raises InputError if this version of rodsweep
-    does not accept the config of the file.
+    The stored validity of a row is judged at its first Hopf point, and a row has larger loads. Rubber has no
+    limit of compression, because its law includes large compression. Raises InputError if this version of
+    rodsweep does not accept the config of the file.
     """
     view = rows.view
     if "F" in view.parameters or "F" not in view.variables or not rows.count:
         return []  # no rows along F
     columns = view.point_columns
     tapers = columns.get("taper", np.ones_like(columns["k1"]))
-    largest = COMPRESSION_LIMIT * columns["k1"] * material_of_rods(view).relative_crushing_forces(tapers)
+    largest = COMPRESSION_LIMIT * columns["k1"] * material_of_rods(view).crushing_forces_over_k1(tapers)
     limits = largest[rows.mask.ravel()]
     kind = view.load_kind
-    scale = np.broadcast_to(view.variables[LOAD_SCALE_NAMES[kind]], rows.mask.shape)[rows.mask]
+    scale = np.broadcast_to(view.variables[LOAD_SCALE_NAME_BY_LOAD[kind]], rows.mask.shape)[rows.mask]
     lines = []
     for max_fraction, verdict in VERDICTS_BY_COMPRESSION.items():
         if max_fraction * limits.min() < view.variables["F"].max():

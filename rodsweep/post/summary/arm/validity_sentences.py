@@ -8,7 +8,7 @@ from ....model.arm.neglected import DOUBTFUL_RATIO, Validity
 from ....results.layouts.si_variables import NEGLECTED_EFFECTS, UNKNOWN_VALIDITY_NUMBER, VALIDITY_VARIABLES
 from ....results.layouts.thresholds import HOPF_CROSSING_CODES
 from ....wording import count_of_total, counted, two_significant_digits
-from ..selection import Selection
+from ..selection import PointSelection
 
 OTHER_BENDING_PLANE_WARNING = (
     "the motion is in the plane of the height; where the height exceeds the width, the arm flutters first in "
@@ -34,8 +34,8 @@ def bending_plane_warning(quantities: Mapping[str, np.ndarray]) -> list[str]:
 
 
 def validity_caveat(variables: Mapping[str, np.ndarray]) -> str:
-    """Sentence on the validity of the model for one arm, if the model does not apply, is doubtful, or this
-    is not known; empty if the model applies, and for a rod. variables: variables of a result with one
+    """Sentence on the validity of the model for one arm, if the model does not apply, is doubtful, or of
+    unknown validity; empty if the model applies, and for a rod. variables: variables of a result with one
     point, by name, () or (1,) each."""
     if any(variable.name not in variables for variable in VALIDITY_VARIABLES):
         return ""
@@ -45,8 +45,8 @@ def validity_caveat(variables: Mapping[str, np.ndarray]) -> str:
 
 def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "", noun: str = "point") -> str:
     """Sentence on the validity of the model at n points; if the model is not valid everywhere, with the
-    largest neglected effect. validity: VALIDITY_VARIABLES by name, (n,) each. noun: "point", or "row" for
-    rows of a phase diagram."""
+    largest neglected effect. validity: VALIDITY_VARIABLES by name, (n,) each. condition: clause on the motion
+    that is judged, such as " at flutter". noun: "point", or "row" for rows of a phase diagram."""
     validities, effects, excesses = (validity[variable.name] for variable in VALIDITY_VARIABLES)
     is_unknown = validities == UNKNOWN_VALIDITY_NUMBER
     preposition = "on" if noun == "row" else "at"
@@ -75,12 +75,12 @@ def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "", n
     )
 
 
-def judged_row_motion_clause(rows: Selection) -> str:
+def judged_row_motion_clause(rows: PointSelection) -> str:
     """Clause on the motion by which the validity of the model on rows of a phase diagram was judged: the
-    first Hopf point of each row, or rest on a row without Hopf point. Empty for other tasks, and for rows
-    whose motion is not known.
+    motion at the first Hopf point of each row, or rest on a row without Hopf point. Empty for other tasks,
+    and for rows whose motion is not known.
 
-    Loads along a row without Hopf point do not enter: `compression_lines` compares them.
+    Loads along a row without Hopf point do not enter; `compression_lines` compares them with the limit.
     """
     if "crossing_at" not in rows.variables:  # no rows of a phase diagram
         return ""

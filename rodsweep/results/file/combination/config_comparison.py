@@ -26,8 +26,8 @@ VARYING_QUANTITY_PLACEHOLDER = "variable"
 
 
 def compared_settings(config: Config) -> dict[str, Any]:
-    """`Config.settings_of_results`, in which a quantity of an arm is VARYING_QUANTITY_PLACEHOLDER instead of
-    None if it varies between points, so that None means that a key is not given."""
+    """`Config.settings_of_results` of `config`. A quantity of the arm that varies between points is
+    VARYING_QUANTITY_PLACEHOLDER instead of None, so that None always means that a key is not given."""
     settings = config.settings_of_results
     if "arm" not in settings:
         return settings
@@ -78,7 +78,8 @@ def config_change_text(stored: dict[str, Any], given: dict[str, Any]) -> str:
 
 
 def _point_set_kind(parameters: ParametersSection) -> str:
-    """Text stating whether the points of a config are a grid, a grid over an arm's quantities, or a list."""
+    """Text stating whether the points of the section `parameters` of a config are a grid, a grid over an
+    arm's quantities, or a list."""
     if parameters.arm_axes:
         return f"a grid over {' and '.join(parameters.arm_axes)}"
     return "a list of points" if parameters.is_list else "a grid"
@@ -115,7 +116,8 @@ def _value_text(value: Any) -> str:
 
 
 def _list_difference(stored: list[Any], given: list[Any], origins: tuple[str, str]) -> str:
-    """Difference of two lists that are too long to show: their lengths, and the first pair that differs."""
+    """Text on the difference of the lists `stored` and `given`, which are too long to show: their lengths,
+    and the first pair that differs. origins: as in `config_difference`."""
     lengths_text = f"{len(stored)} values in {origins[0]} and {len(given)} in {origins[1]}"
     numbered_pairs = enumerate(zip_longest(stored, given), 1)
     number, values = next((i, pair) for i, pair in numbered_pairs if pair[0] != pair[1])

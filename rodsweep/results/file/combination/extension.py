@@ -20,8 +20,8 @@ from ....errors import InputError
 from ....sweep.points.groups import MAX_GROUP_POINTS, groups_along_longest_axis
 from ....sweep.points.points import Points
 from ....wording import enumeration
-from ...layouts import EXTENSION_RULES
-from ...layouts.variables import ExtensionRule, Layout
+from ...layouts import REUSE_RULES_BY_TASK
+from ...layouts.variables import Layout, ReuseRule
 from ..creation import FilePlan
 from ..points import stored_records
 from ..validation import ResultHeader
@@ -34,7 +34,7 @@ Indices = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
-class StoredPointMap:
+class StoredToNewPointMap:
     """Map from stored points to new points: by the positions on each axis of a grid, or in a list."""
 
     stored_shape: tuple[int, ...]
@@ -60,15 +60,15 @@ class StoredPointMap:
 class Extension:
     """The stored points of a result file that the file of a larger config reuses.
 
-    path: stored file. stored_layout, new_layout: layouts of the stored and the new file. point_map: map from
-    stored to new points.
+    stored_path: stored file. stored_layout, new_layout: layouts of the stored and the new file. point_map:
+    map from stored to new points.
     """
 
-    path: Path
+    stored_path: Path
     stored_layout: Layout
     new_layout: Layout
-    point_map: StoredPointMap
-    increased_options: tuple[tuple[ExtensionRule, Any], ...]
+    point_map: StoredToNewPointMap
+    increased_options: tuple[tuple[ReuseRule, Any], ...]
     """(rule, old value) for every option that the new config increases."""
     recomputes_all: bool
     """Whether every stored point is computed again."""
@@ -77,7 +77,7 @@ class Extension:
         """Yields records, (n,) in the new layout, of the stored points that are reused."""
         if self.recomputes_all:
             return
-        for records in stored_records(self.path, self.stored_layout):
+        for records in stored_records(self.stored_path, self.stored_layout):
             index = self.point_map(records["index"])
             is_kept = index >= 0
             for option, old_value in self.increased_options:
@@ -114,7 +114,9 @@ def extension_of(header: ResultHeader, points: Points, plan: FilePlan) -> Extens
     for key, value in in_file["parameters"].items():
         new_value = requested["parameters"].get(key)
         if isinstance(value, dict) and isinstance(new_value, dict):  # the line of a phase diagram
-            _positions_on_axis(header, key, np.array(value["values"]), np.array(new_value["values"]))
+            _new_positions_of_old_values(
+                header, key, np.array(value["values"]), np.array(new_value["values"])
+            )
             has_longer_line = has_longer_line or value != new_value
         else:
             _refuse_difference(header, config_difference(value, new_value, f"parameters.{key}"))
@@ -127,17 +129,18 @@ def extension_of(header: ResultHeader, points: Points, plan: FilePlan) -> Extens
     for name, value in in_file[task].items():
         if name not in requested[task] or requested[task][name] == value:
             continue
-        rule = EXTENSION_RULES[task].get(name)
+        rule = REUSE_RULES_BY_TASK[task].get(name)
         if rule is None or not rule.requests_more_data(value, requested[task][name]):
             _refuse_difference(header, config_difference(value, requested[task][name], f"{task}.{name}"))
         else:
             longer.append((rule, value))
-    point_map = _stored_point_map(header, points, plan)
+    point_map = _stored_to_new_point_map(header, points, plan)
     return Extension(header.path, header.layout, plan.layout, point_map, tuple(longer), has_longer_line)
 
 
 def _refuse_difference(header: ResultHeader, difference: str) -> None:
-    """Raises InputError if the text `difference`, on how file and config differ, is not empty."""
+    """Raises InputError if the text `difference`, on how the file of `header` and the config differ, is not
+    empty."""
     if difference:
         raise InputError(
             f"{header.path} cannot be extended to this config ({difference}); choose another file with -o, "
@@ -154,16 +157,20 @@ def points_description(points: Points) -> str:
     )
 
 
-def _stored_point_map(header: ResultHeader, old: Points, plan: FilePlan) -> StoredPointMap:
-    """Map from the stored points `old` to the points of the plan; InputError if the plan lacks a point."""
+def _stored_to_new_point_map(header: ResultHeader, old: Points, plan: FilePlan) -> StoredToNewPointMap:
+    """Map from the stored points `old` to the points of the plan; raises InputError if the plan lacks a
+    point."""
     new_points = plan.points
     if tuple(old.axes) != tuple(new_points.axes) or old.names != new_points.names:
         kinds_of_points = points_description(old), points_description(new_points)
         _refuse_difference(header, config_difference(*kinds_of_points, "parameters"))
     if not old.axes:
-        return StoredPointMap(old.shape, new_points.shape, (_positions_in_list(header, old, new_points),))
+        return StoredToNewPointMap(
+            old.shape, new_points.shape, (_positions_of_old_in_new_list(header, old, new_points),)
+        )
     positions = [
-        _positions_on_axis(header, name, values, new_points.axes[name]) for name, values in old.axes.items()
+        _new_positions_of_old_values(header, name, values, new_points.axes[name])
+        for name, values in old.axes.items()
     ]
     if chains := plan.chains:
         new_length = new_points.shape[chains.axis]
@@ -175,12 +182,13 @@ def _stored_point_map(header: ResultHeader, old: Points, plan: FilePlan) -> Stor
         is_same_axis = old_groups is not None and old_groups.axis == axis
         is_kept = is_same_axis & _is_group_unchanged(positions[axis], new_points.shape[axis])
         positions[axis] = np.where(is_kept, positions[axis], -1)
-    return StoredPointMap(old.shape, new_points.shape, tuple(positions))
+    return StoredToNewPointMap(old.shape, new_points.shape, tuple(positions))
 
 
-def _positions_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> Indices:
-    """Position of every old value, (n,), on the new axis, (m,); -1 where the values differ by rounding.
-    Raises InputError for an old value that is not on the new axis."""
+def _new_positions_of_old_values(header: ResultHeader, name: str, old: Array, new: Array) -> Indices:
+    """Position of every value of the old axis `old`, (n,), on the new axis `new`, (m,); -1 where the two
+    values differ, but only by rounding. Raises InputError for an old value that is not on the new axis.
+    header, name: file and parameter, for the message."""
     # Rounding moves a value to either side, so both neighbours are compared.
     above = np.searchsorted(new, old).clip(max=len(new) - 1)
     below = (above - 1).clip(min=0)
@@ -197,8 +205,9 @@ def _positions_on_axis(header: ResultHeader, name: str, old: Array, new: Array) 
 
 
 def _positions_before_first_change(positions: Indices, new_length: int, upward: bool) -> Indices:
-    """Positions `positions` of the values along a chain, (n,), with -1 from the first changed position of the
-    chain on. new_length: number of values on the new axis. upward: direction of the chains."""
+    """The new positions `positions` of the values along a chain, (n,), with -1 for the first value whose
+    position has changed and for all later values of the chain. new_length: number of values on the new axis.
+    upward: whether chains run towards larger values."""
     forward_positions = positions if upward else np.where(positions < 0, -1, new_length - 1 - positions)[::-1]
     is_kept = np.logical_and.accumulate(forward_positions == np.arange(len(forward_positions)))
     return np.where(is_kept if upward else is_kept[::-1], positions, -1)
@@ -214,8 +223,9 @@ def _is_group_unchanged(positions: Indices, new_length: int) -> NDArray[np.bool_
     return same_length & ~has_moved[indices // MAX_GROUP_POINTS]
 
 
-def _positions_in_list(header: ResultHeader, old: Points, new: Points) -> Indices:
-    """Position of every old point in the new list, (n,); InputError for a point not in the new list."""
+def _positions_of_old_in_new_list(header: ResultHeader, old: Points, new: Points) -> Indices:
+    """Position of every old point in the new list, (n,). Raises InputError for a point not in the new list.
+    header: file, for the message."""
     # Adding 0.0 turns -0.0 into 0.0, so that equal rows have equal bytes.
     rows = [np.column_stack(points.columns) + 0.0 for points in (new, old)]
     index_by_row: dict[bytes, int] = {}

@@ -26,7 +26,7 @@ from ..points import points_of_file, records_at, stored_records, write_records
 from ..provenance import MAX_ATTRIBUTE_LENGTH, blas_kernels_in
 from ..validation import ResultHeader
 from .config_comparison import compared_settings, config_difference
-from .extension import ROUNDING_TOLERANCE, StoredPointMap, points_description
+from .extension import ROUNDING_TOLERANCE, StoredToNewPointMap, points_description
 
 NOT_INHERITED_ATTRIBUTES = (
     "program", "format", "fingerprint", "config_resolved", "coordinates", "finished", "snapshot",
@@ -46,7 +46,7 @@ class JoinedFile:
 
     plan: FilePlan
     sources: Sequence[ResultHeader]
-    point_maps: Sequence[StoredPointMap]
+    point_maps: Sequence[StoredToNewPointMap]
 
     def write(self, path: Path) -> list[ResultHeader]:
         """Writes the points of all sources into the file at `path`; returns the sources from which points
@@ -65,9 +65,9 @@ class JoinedFile:
         return [self.sources[number] for number in np.unique(owner[owner >= 0])]
 
     def _refuse_different(self, path: Path, records: np.ndarray, owner: np.ndarray, number: int) -> None:
-        """Raises InputError if records, (n,), of the source `number` differ from the values already stored in
-        the file for the same points. Rounding errors are allowed. owner: number of the source of each stored
-        point, (points,)."""
+        """Raises InputError if `records`, (n,), of the source `number` differ from the values already stored
+        in the file `path` for the same points. Rounding errors, and different computing times, are allowed.
+        owner: number of the source of each stored point, (points,)."""
         if not len(records):
             return
         stored_records = records_at(path, records["index"], self.plan.layout)
@@ -90,9 +90,10 @@ class JoinedFile:
                     )
 
     def _is_rounding_error(self, name: str, a: Any, b: Any, sources: Sequence[ResultHeader]) -> bool:
-        """Whether two different values of the variable `name` differ by rounding only, at most by
-        MAX_DIFFERENCE_PER_ACCURACY. True for error estimates and values that are no floats; False for
-        `status`, and without groups if one BLAS kernel computed all. a, b: values. sources: headers."""
+        """Whether two different values a and b of the variable `name` differ only by rounding: relatively by
+        at most MAX_DIFFERENCE_PER_ACCURACY times the accuracy. Always True for error estimates and for values
+        that are not floats; always False for `status`, and for all variables if the plan has no groups and
+        one BLAS kernel computed all `sources`."""
         kernels = {kernel for source in sources for kernel in blas_kernels_in(source.attributes)}
         if (len(kernels) < 2 and not self.plan.groups) or name == "status":
             return False
@@ -105,7 +106,8 @@ class JoinedFile:
 
 
 def joined_file_of(sources: Sequence[ResultHeader], planner: FilePlanMaker) -> JoinedFile:
-    """The `JoinedFile` of sources with different points; raises InputError if the files cannot be joined."""
+    """The `JoinedFile` of sources with different points; raises InputError if the files cannot be joined.
+    planner: function from config and points to the plan of a file."""
     first, *other_sources = sources
     settings = compared_settings(config_from_resolved(first.config))
     grids = [points_of_file(source.path, source.layout) for source in sources]
@@ -129,17 +131,17 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: FilePlanMaker) -> J
             f"{first.path} is the file of an arm, and such files are merged only as shards of a single "
             "config; run --extend adds points to the file"
         )
-    points, point_maps = _joined_grid(grids) if grids[0].is_grid else _joined_list(grids)
+    points, point_maps = _joined_grid(grids) if grids[0].is_grid else _joined_list_and_maps(grids)
     config = _joined_config(first, settings, points)
     plan = planner(config, points)
     _refuse_broken_chains(sources, grids, plan)
     return JoinedFile(_with_attributes(plan, first, config), sources, point_maps)
 
 
-def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]:
-    """Returns (joined grid, map from each grid to the joined grid). The axes of the joined grid have the
-    values of all grids. Raises InputError if a point of the joined grid is in no grid, or if values differ
-    only by rounding."""
+def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredToNewPointMap]]:
+    """Returns (joined grid, maps from the grids to the joined grid). The axes of the joined grid have the
+    values of all grids. Raises InputError if a point of the joined grid is in no grid, or if two values on an
+    axis differ only by rounding."""
     axes = []
     for name in grids[0].names:
         axis = np.unique(np.concatenate([grid.columns_by_name[name] for grid in grids]))
@@ -157,7 +159,7 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
     for grid in grids:
         positions = [np.searchsorted(axis, column) for axis, column in zip(axes, grid.columns, strict=True)]
         covered[np.ix_(*positions)] = True
-        maps.append(StoredPointMap(grid.shape, union.shape, tuple(positions)))
+        maps.append(StoredToNewPointMap(grid.shape, union.shape, tuple(positions)))
     if not covered.all():
         raise InputError(
             f"together the files do not form a full grid: {np.count_nonzero(~covered)} of {covered.size} "
@@ -167,8 +169,8 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
     return union, maps
 
 
-def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]:
-    """Returns (joined list, map from each list to the joined list). The joined list has the points of all
+def _joined_list_and_maps(lists: Sequence[Points]) -> tuple[Points, list[StoredToNewPointMap]]:
+    """Returns (joined list, maps from the lists to the joined list). The joined list has the points of all
     lists without repetition."""
     numbers: dict[bytes, int] = {}
     rows = [np.column_stack(points.columns) + 0.0 for points in lists]
@@ -179,14 +181,16 @@ def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
     union = Points(lists[0].names, tuple(np.ascontiguousarray(all_rows.T)), is_grid=False)
     shapes = (points.shape for points in lists)
     return union, [
-        StoredPointMap(shape, union.shape, (row_map,)) for shape, row_map in zip(shapes, maps, strict=True)
+        StoredToNewPointMap(shape, union.shape, (row_map,))
+        for shape, row_map in zip(shapes, maps, strict=True)
     ]
 
 
 def _joined_config(header: ResultHeader, settings: dict[str, Any], points: Points) -> Config:
-    """Config of the joined file: the config of the first file, for a grid with the axes of the joined points.
-    settings: `Config.settings_of_results` of this config; its options of the task without effect have their
-    default values. Derived entries, such as the gamma1 of a diagram, are left out."""
+    """Config of the joined file: the config of the first file, described by `header`; for a grid, its axes
+    are replaced by the axes of the joined `points`. settings: `Config.settings_of_results` of the first
+    file's config, in which task options without effect have their default values. Derived entries, such as
+    the gamma1 of a diagram, are left out."""
     task = header.config["task"]
     parameters = dict(header.config["parameters"])
     if points.is_grid:
@@ -199,8 +203,8 @@ def _joined_config(header: ResultHeader, settings: dict[str, Any], points: Point
 
 
 def _axis_from_values(own_axis: Axis, values: Array) -> Axis:
-    """An axis with the given values, (n,): `own_axis` or a range if its values are equal bit by bit,
-    otherwise a list."""
+    """An axis with the given values, (n,): `own_axis` if it has these values bit by bit, else a range with
+    these values bit by bit, else a list."""
     if np.array_equal(own_axis.array(), values):
         return own_axis
     if len(values) > 2 and np.isfinite(values).all():
@@ -214,8 +218,8 @@ def _axis_from_values(own_axis: Axis, values: Array) -> Axis:
 
 
 def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Points], plan: FilePlan) -> None:
-    """Raises InputError if the points of a chain of the joined file would come from several files. sources,
-    grids: source files and their grids."""
+    """Raises InputError if the points of a chain of `plan`, the joined file, would come from several files.
+    sources, grids: source files and their grids."""
     if not plan.chains:
         return
     name = plan.points.names[plan.chains.axis]

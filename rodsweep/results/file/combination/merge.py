@@ -16,7 +16,7 @@ from ....sweep.points.ranges import index_count
 from ...run.journal import JOURNAL_GLOB, journal_directory
 from ..creation import FilePlan, add_variables, create_file
 from ..points import missing_ranges, points_of_file, records_to_add, write_records
-from ..provenance import KERNELS_ATTRIBUTE, merged_history, several_kernels_warning, utc_time
+from ..provenance import BLAS_KERNELS_ATTRIBUTE, merged_history, several_blas_kernels_warning, utc_time
 from ..replacement import FileReplacement, disk_errors_as_refusals
 from ..validation import ResultHeader, read_header
 from .joining import FilePlanMaker, JoinedFile, joined_file_of
@@ -64,7 +64,8 @@ def merge(output: Path, paths: Sequence[Path], planner: FilePlanMaker) -> MergeR
 def _merge(
     replacement: FileReplacement, sources: Sequence[ResultHeader], planner: FilePlanMaker
 ) -> MergeResult:
-    """Replaces the output by a copy of the first source with the points of all other sources added."""
+    """Replaces the output (`replacement`) by a copy of the first source with the points of all other sources
+    added. planner: as in `merge`."""
     layout = sources[0].layout
     plan = planner(config_from_resolved(sources[0].config), points_of_file(sources[0].path, layout))
     with replacement.writing_new_file(sources[0].path) as copy:
@@ -84,8 +85,8 @@ def _write_joined_file(replacement: FileReplacement, joined: JoinedFile) -> Merg
 
 
 def _write_provenance_and_finish(copy: Path, plan: FilePlan, used: Sequence[ResultHeader]) -> MergeResult:
-    """Writes the provenance of the points into the merged file, and finishes the file if no point is missing;
-    returns the outcome of the merge. used: sources of the stored points."""
+    """Writes the provenance of the points into the merged file `copy`, and finishes the file if no point is
+    missing; returns the outcome of the merge. plan: plan of the file. used: sources of the stored points."""
     missing_indices = missing_ranges(copy)
     finished = not missing_indices and not plan.layout.has_sweep_wide_variables
     history = merged_history([source.attributes for source in used])
@@ -96,7 +97,9 @@ def _write_provenance_and_finish(copy: Path, plan: FilePlan, used: Sequence[Resu
         file.attrs.update(history)
         points = file["status"].size
     count = index_count(missing_indices)
-    return MergeResult(points - count, count, finished, several_kernels_warning(history[KERNELS_ATTRIBUTE]))
+    return MergeResult(
+        points - count, count, finished, several_blas_kernels_warning(history[BLAS_KERNELS_ATTRIBUTE])
+    )
 
 
 def _read_headers(paths: Sequence[Path]) -> list[ResultHeader]:

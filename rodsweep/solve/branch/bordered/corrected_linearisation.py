@@ -6,7 +6,7 @@ itself and with the factors of the matrix, so that no further matrix is factoris
 values of the map G = S^-1 P of the cycle (S: symmetry, P: propagator over the solved time interval) on the
 right and left invariant subspaces of the matrix. Their error is of second order in the distance of the cycle
 from the matrix, because it is the product of the errors of both subspaces. Each further pass improves the
-right subspace, by one power of G. The last changes show the errors that are left.
+right subspace, by one power of G. The last changes show the errors that are left. Shapes: as in `matrix`.
 """
 
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ class LinearisationCorrectionSettings:
     tangent_tolerance: float = 1e-5
     """Relative tolerance of the tangent, which serves for predictions and for the signs at folds."""
     max_correction_steps: int = 4
-    """Maximum number of corrections; a pass takes a tenth of the time of a matrix."""
+    """Maximum number of corrections; each takes a tenth of the time for a new matrix."""
 
 
 LINEARISATION_CORRECTION_SETTINGS = LinearisationCorrectionSettings()
@@ -50,9 +50,9 @@ LINEARISATION_CORRECTION_SETTINGS = LinearisationCorrectionSettings()
 class CorrectedLinearisation:
     """Tangent and multipliers at `orbit`, corrected with the factors of the nearby matrix `nearby_matrix`.
     corrected_tangent: tangent of the branch, (N + 1,), of unit arc length.
-    multipliers_over_solved_time_interval: multipliers over the solved part of the period, (rank,).
-    relative_error: estimate of the relative error of the tangent and of the multipliers, divided by the
-    largest modulus or 1."""
+    multipliers_over_solved_time_interval: multipliers over the solved part of the period, (multipliers,).
+    relative_error: estimate of the error of the multipliers, divided by the larger of 1 and the largest
+    modulus."""
 
     orbit: Orbit
     nearby_matrix: BorderedMatrix
@@ -63,12 +63,12 @@ class CorrectedLinearisation:
 
     @property
     def workspace(self) -> NewtonWorkspace:
-        """Memory of the matrix."""
+        """Memory of Newton's matrices, in which `nearby_matrix` was assembled."""
         return self.nearby_matrix.workspace
 
     def multipliers(self) -> Complex:
-        """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
-        multiplier."""
+        """Floquet multipliers larger than rounding error, with the trivial multiplier, by descending modulus,
+        (multipliers,)."""
         return multipliers_over_period(self.multipliers_over_solved_time_interval, self.orbit)
 
     def branch_tangent(self, border: Array) -> Array:
@@ -126,8 +126,9 @@ def corrected_linearisation(
 
 
 def _relative_tangent_change(matrix: BorderedMatrix, orbit: Orbit, tangent: Array, previous: Array) -> float:
-    """Relative change between two approximations, (N + 1,) each, of the tangent at `orbit`, in the components
-    (deflection, log period, parameter)."""
+    """Relative change from the approximation `previous` of the tangent at `orbit` to the approximation
+    `tangent`, (N + 1,) each, in the components (deflection, log period, parameter) of the scale of
+    `matrix`."""
     derivative = matrix.scale.directional_derivative(orbit, tangent)
     change = matrix.scale.directional_derivative(orbit, tangent - previous)
     return float(np.linalg.norm(change) / np.linalg.norm(derivative))
@@ -136,12 +137,12 @@ def _relative_tangent_change(matrix: BorderedMatrix, orbit: Orbit, tangent: Arra
 class _CorrectedInvariantSubspaces:
     """Right and left invariant subspaces of the map G over the solved part for the multipliers with moduli of
     at least `LINEARISATION_CORRECTION_SETTINGS.min_corrected_multiplier_modulus`, and the Ritz values of G on
-    these subspaces. increments: changes of the orbit for the basis of the right subspace as changes of the
-    start, (k, N + 1)."""
+    these subspaces. increments: changes of the orbit if its start changes by the basis vectors of the right
+    subspace, (k, N + 1)."""
 
     def __init__(self, matrix: BorderedMatrix, right: Array, left: Array, values: Complex) -> None:
-        """right, left: real bases of the subspaces at the orbit of `matrix`, (k, n) each. values:
-        multipliers of the matrix over the solved part, (rank,), first those of the subspaces."""
+        """right, left: real bases of the subspaces at the orbit of `matrix`, (k, n) each. values: multipliers
+        of the matrix over the solved part, (multipliers,), with the k multipliers of the subspaces first."""
         self._matrix = matrix
         self._left = left
         self._products = left @ right.T
@@ -154,8 +155,8 @@ class _CorrectedInvariantSubspaces:
 
     @classmethod
     def at_matrix(cls, matrix: BorderedMatrix) -> "_CorrectedInvariantSubspaces | None":
-        """The subspaces at the orbit of `matrix`; None if rounding separates a pair of multipliers at the
-        smallest modulus."""
+        """The subspaces at the orbit of `matrix`; None if no multiplier is corrected, if rounding separates a
+        pair of multipliers at the smallest modulus, or if the map is not finite."""
         orbit = matrix.orbit
         G = orbit.symmetry.apply_inverse_to_flow(matrix.propagator, orbit.form.layout)
         Q, R = low_rank_factors(np.ascontiguousarray(G), FLOQUET_MULTIPLIER_SETTINGS.negligible_column_ratio)
@@ -173,18 +174,18 @@ class _CorrectedInvariantSubspaces:
 
     @property
     def multipliers(self) -> Complex:
-        """Multipliers over the solved part, (rank,): Ritz values and the neglected multipliers."""
+        """Multipliers over the solved part, (multipliers,): Ritz values and the neglected multipliers."""
         return np.append(self._values, self._neglected)
 
     @property
     def trivial_multiplier_error(self) -> float:
-        """Distance of the trivial multiplier from 1, relative to the largest modulus or 1."""
+        """Distance of the trivial multiplier from 1, divided by the larger of 1 and the largest modulus."""
         return float(np.abs(self._values - 1).min()) / max(1.0, float(np.abs(self._values).max()))
 
     def correct_ritz_values(self, orbit: Orbit, end_changes: Array) -> float:
         """Corrects the Ritz values at the cycle `orbit`. Returns the largest change of a Ritz value, divided
-        by the largest modulus or 1. end_changes: ends, (k, n), of `BorderedMatrix.residual_variations` at
-        this cycle for `increments`."""
+        by the larger of 1 and the largest modulus. end_changes: ends, (k, n), of
+        `BorderedMatrix.residual_variations` at this cycle for `increments`."""
         n = self._left.shape[1]
         ends = np.ascontiguousarray((self.increments[:, -2 - n : -2] + end_changes).T)
         images = orbit.symmetry.apply_inverse_to_flow(ends, orbit.form.layout)
@@ -198,8 +199,9 @@ class _CorrectedInvariantSubspaces:
         return change / max(1.0, float(np.abs(values).max()))
 
     def apply_map_to_right_subspace(self, columns: Array) -> None:
-        """Replaces the right subspace by its image under G. columns: stages, (K, s, k, n), of
-        `BorderedMatrix.residual_variations`, whose ends the last call of `correct_ritz_values` had."""
+        """Replaces the right subspace by its image under G. columns: stages, (K, s, k, n), from the call of
+        `BorderedMatrix.residual_variations` whose ends were passed to the last call of
+        `correct_ritz_values`."""
         starts = np.ascontiguousarray(self._next_starts)
         self.increments = self.increments + self._matrix.orbit_increments_at_fixed_parameter(
             starts, np.ascontiguousarray(columns)

@@ -1,4 +1,5 @@
-"""Tangent of a branch at a cycle near the orbit at which a bordered matrix was assembled."""
+"""Tangent of a branch at a cycle near the orbit at which a bordered matrix was assembled. Shapes: as in
+`matrix`."""
 
 from dataclasses import replace
 
@@ -14,10 +15,11 @@ from .matrix import BorderedMatrix
 def corrected_tangent(
     matrix: BorderedMatrix, orbit: Orbit, border: Array, tangent: Array, residuals: tuple[Array, Array]
 ) -> Array:
-    """An approximate tangent of the branch at `orbit` after one step of iterative refinement of its linear
-    equation, with the factors of `matrix`, (N + 1,). The arc length of the tangent along `border`, in
-    components (deflection, log period, parameter), (3,), becomes 1. tangent: approximate tangent, (N + 1,).
-    residuals: stages, (K, s, 1, n), and ends, (1, n), of `BorderedMatrix.residual_variations` for `tangent`.
+    """The approximate tangent `tangent` of the branch at `orbit` after one step of iterative refinement of
+    its linear equation with the factors of `matrix`; shape (N + 1,). The arc length of the tangent along
+    `border`, in components (deflection, log period, parameter), (3,), becomes 1. tangent: approximate
+    tangent, (N + 1,). residuals: stages, (K, s, 1, n), and ends, (1, n), of
+    `BorderedMatrix.residual_variations` for `tangent`.
     """
     p = orbit.orbit_equations
     columns, ends = residuals

@@ -1,4 +1,4 @@
-"""Linear systems with one matrix but for its last row, the border."""
+"""Linear systems whose matrices differ only in the last row, the border."""
 
 import numpy as np
 from scipy.linalg.lapack import dgetrf, dgetrs
@@ -8,7 +8,7 @@ from ....arrays import Array
 
 class LinearSystemWithBorderRow:
     """Linear system of M equations, the last of which changes. matrix: (M, M), whose last row is not used.
-    Successive systems mostly have equal borders, so that the factors of the last one are kept."""
+    Successive systems mostly have equal borders; therefore the factors of the last system are kept."""
 
     def __init__(self, matrix: Array) -> None:
         self._matrix = matrix

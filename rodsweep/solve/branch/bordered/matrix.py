@@ -107,8 +107,8 @@ class BorderedMatrix:
         return self.solve(border, right_side, columns[:, :, 0], 1.0)
 
     def branch_tangent(self, border: Array) -> Array:
-        """Tangent of the branch, (N + 1,). Its deflection, logarithm of the period, and parameter (see
-        `scale.components`) have the norm 1 and make an acute angle with `border`, (3,)."""
+        """Tangent of the branch with unit arc length, (N + 1,). In components (deflection, log period,
+        parameter), (3,), the tangent is a unit vector that makes an acute angle with `border`, (3,)."""
         # The null vector of all rows except the last, normalised by the border; residuals are not needed.
         right_side = np.append(np.zeros(len(self._right_sides)), 1.0)
         change = self.solve(border, right_side, self._stage_columns[:, :, 1], 0.0)
@@ -121,8 +121,8 @@ class BorderedMatrix:
         by the factors of this matrix, (K, s, v, n), and the resulting increments of the state at the
         end of the last interval for a fixed start, (v, n).
 
-        variations: variations of orbit values and of the coordinate of the parameter `name`, (v, N + 1);
-        None: the parameter of the branch.
+        variations: variations of orbit values and of the coordinate of the parameter `name`, (v, N + 1).
+        name: None for the parameter of the branch.
         """
         derivatives = parameter_derivatives(orbit.form, name or self.scale.parameter_name)
         equations = orbit.orbit_equations
@@ -148,8 +148,8 @@ class BorderedMatrix:
         return float(self.solve(border, np.array([*sides, phase_side, 0.0]), columns[:, :, 0], 1.0)[-1])
 
     def orbit_increments_at_fixed_parameter(self, starts: Array, columns: Array) -> Array:
-        """Increments of the orbit, (v, N + 1), at fixed period and parameter. starts: increments of the start
-        state, (v, n). columns: reduced right-hand sides of the stages, (K, s, v, n)."""
+        """v increments of the orbit, (v, N + 1), at fixed period and parameter. starts: increments of the
+        start state, (v, n). columns: their reduced right-hand sides at the stages, (K, s, v, n)."""
         out = np.empty_like(columns)
         substitute_stages(starts, columns, self.orbit.orbit_equations, self._memory.factors, out)
         stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)

@@ -49,9 +49,9 @@ class ArcLengthScale:
         cls, orbit: Orbit, name: str, min_deflection_unit: float, min_coordinate_unit: float = 0.0
     ) -> "ArcLengthScale":
         """The scale of an orbit. The units are sqrt(d^2 + min_deflection_unit^2), d: largest deflection over
-        the orbit, and the modulus of the parameter coordinate. name: continuation parameter.
-        min_deflection_unit: smallest unit of the deflection, in L. min_coordinate_unit: smallest unit of the
-        parameter coordinate."""
+        the orbit, and the larger of `min_coordinate_unit` and the modulus of the parameter coordinate. name:
+        continuation parameter. min_deflection_unit: smallest unit of the deflection, in L.
+        min_coordinate_unit: smallest unit of the parameter coordinate."""
         max_deflection = float(np.abs(orbit.all_states @ deflection_functional(orbit)).max())
         # `min_deflection_unit` keeps the unit positive near a Hopf point, where the deflection vanishes.
         return cls(
@@ -70,8 +70,8 @@ class ArcLengthScale:
         return np.array([deflection, np.log(orbit.period), coordinate])
 
     def directional_derivative(self, orbit: Orbit, change: Array) -> Array:
-        """Derivative of `components` at an orbit, (3,), along a variation of orbit values and parameter
-        coordinate, (N + 1,)."""
+        """Derivative of `components` at an orbit, (3,), along the variation `change` of orbit values and
+        parameter coordinate, (N + 1,)."""
         deflection = (
             float(deflection_functional(orbit) @ change[: orbit.form.unknown_count]) / self.deflection_unit
         )

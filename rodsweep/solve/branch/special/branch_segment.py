@@ -6,7 +6,7 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import mesh_of_orbit
 from ...unsolvable import Unsolvable
 from ..arc_length_step import BranchCycle, arc_length_between
-from ..bordered.condition import moved_orbit
+from ..bordered.border_condition import moved_orbit
 from ..bordered.corrected_linearisation import nearby_bordered_matrix
 from ..bordered.matrix import BorderedMatrix
 from ..branch_prediction import parameter_change_polynomial
@@ -104,7 +104,7 @@ class BranchSegment:
         return matrix if is_near else None
 
     @property
-    def last_solved_cycle(self) -> tuple[float, Orbit, Array]:
+    def last_arc_length_cycle_and_tangent(self) -> tuple[float, Orbit, Array]:
         """(arc length from `start`, orbit, derivative of orbit values and parameter coordinate with respect
         to arc length, (N + 1,)) of the last cycle that `cycle_at` solved; raises ValueError if no cycle was
         solved."""
@@ -115,4 +115,4 @@ class BranchSegment:
     def parameter_per_arc_length(self) -> float:
         """Derivative of the scaled parameter coordinate with respect to arc length, at the last cycle that
         `cycle_at` solved."""
-        return float(self.last_solved_cycle[2][-1]) / self.start.scale.coordinate_unit
+        return float(self.last_arc_length_cycle_and_tangent[2][-1]) / self.start.scale.coordinate_unit

@@ -37,12 +37,13 @@ END_REASON_BY_MARGIN = (
     CurveEndReason.left_the_model,
     CurveEndReason.hopf,
 )
-"""Reason for the end of a curve, by the index of the margin that becomes 0; four are distances from edges."""
+"""Reason for the end of a curve, by the index of the margin that becomes 0; the first four margins are
+distances from the edges of the plane."""
 
 
 def are_identical_curves(first: SpecialPointCurve, second: SpecialPointCurve, line_axis: PlaneAxis) -> bool:
-    """Whether two curves are identical: kinds agree, and their ends coincide within a tolerance. line_axis:
-    axis of the parameter along a row."""
+    """Whether the curves `first` and `second` are identical: their kinds agree, and their ends coincide
+    within a tolerance. line_axis: axis of the parameter along a row."""
     pairs = zip(_curve_end_positions(first, line_axis), _curve_end_positions(second, line_axis), strict=True)
     distances = (abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
     return first.kind == second.kind and all(
@@ -50,8 +51,8 @@ def are_identical_curves(first: SpecialPointCurve, second: SpecialPointCurve, li
     )
 
 
-def leaves_range_of_rows(curve: SpecialPointCurve, line_axis: PlaneAxis) -> bool:
-    """Whether a curve ends at an edge of the plane across the rows. line_axis: axis along the rows."""
+def leaves_range_along_rows(curve: SpecialPointCurve, line_axis: PlaneAxis) -> bool:
+    """Whether a curve ends at an edge of the plane at which the rows end. line_axis: axis along the rows."""
     positions = (line_axis.scaled_coordinate(curve.points[i].parameter_value) for i in (0, -1))
     return any(
         end is CurveEndReason.edge
@@ -62,7 +63,7 @@ def leaves_range_of_rows(curve: SpecialPointCurve, line_axis: PlaneAxis) -> bool
 
 def _curve_end_positions(curve: SpecialPointCurve, line_axis: PlaneAxis) -> list[tuple[float, float]]:
     """Both ends of a curve, each as (row coordinate, position along the row), from 0 to 1, in ascending
-    order."""
+    order. line_axis: axis of the parameter along a row."""
     ends = curve.points[0], curve.points[-1]
     # Ordered, because two traces of one curve may run in opposite directions.
     return sorted((p.row_coordinate, line_axis.scaled_coordinate(p.parameter_value)) for p in ends)

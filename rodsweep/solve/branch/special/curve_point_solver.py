@@ -51,14 +51,15 @@ class CurvePointSolver(ParameterRoles):
     def point_near_chord(
         self, first: SolvedCurvePoint, second: SolvedCurvePoint, fraction: float
     ) -> SolvedCurvePoint:
-        """Point of the curve near the fraction of the chord from `first` to `second`; raises Unsolvable."""
+        """Point of the curve near the point at `fraction` of the chord from `first` to `second`; raises
+        Unsolvable."""
         weights = 1 - fraction, fraction
         start, row = weighted_sum_of_curve_points(self, (first, second), weights, mesh_of_orbit(second.orbit))
         line = search_line_across_curve(second.step_from(first), first, second)
         return self.cycle_family_at(second).corrected_point(start, row, line, second.normal_derivatives)
 
     def point_on_row(self, first: SolvedCurvePoint, second: SolvedCurvePoint, row: float) -> SolvedCurvePoint:
-        """Point of the curve between `first` and `second`. row: its row coordinate. Raises Unsolvable."""
+        """Point of the curve between `first` and `second` at the row coordinate `row`; raises Unsolvable."""
         inner, outer = map(self.with_unexchanged_roles, (first, second))
         length = outer.row_coordinate - inner.row_coordinate
         fraction = (row - inner.row_coordinate) / length if length else 0.0
@@ -91,7 +92,7 @@ class CurvePointSolver(ParameterRoles):
 
         point = self.point_at_zero_between(ends[0], ends[1], distance, (distance(ends[0]), distance(ends[1])))
         value = self.row_parameter_axis.value(row)
-        orbit = orbit_with_parameters(point.orbit, {self.row_parameter_axis.name: value})
+        orbit = orbit_with_parameters(point.orbit, {self.row_parameter_axis.parameter_name: value})
         return replace(
-            self.with_unexchanged_roles(point), orbit=orbit, row_coordinate=row, row_parameter=value
+            self.with_unexchanged_roles(point), orbit=orbit, row_coordinate=row, row_parameter_value=value
         )

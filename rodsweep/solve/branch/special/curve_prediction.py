@@ -10,7 +10,7 @@ from ....arrays import Array
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of_orbit
 from ...unsolvable import Unsolvable
-from ..bordered.condition import require_equal_unknowns
+from ..bordered.border_condition import require_equal_unknowns
 from .curve_ends import SPECIAL_CURVE_END_SETTINGS
 from .parameter_roles import ParameterRoles
 from .solved_curve_point import SolvedCurvePoint, arc_lengths_from_last_point
@@ -20,9 +20,10 @@ from .special_curves import CURVE_IDENTITY_SETTINGS, lagrange_weights
 def predicted_orbit_and_row_coordinate(
     roles: ParameterRoles, points: Sequence[SolvedCurvePoint], length: float
 ) -> tuple[Orbit, float]:
-    """Returns (orbit, row coordinate), predicted at the arc length `length` beyond the last point, or before
-    the rod is crushed; raises Unsolvable."""
-    last_points = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
+    """Returns (orbit, row coordinate), predicted at the arc length `length` beyond the last of `points`, or
+    at a shorter arc length, before the rod is crushed; raises Unsolvable. roles: roles of the two
+    parameters."""
+    last_points = points[-CURVE_IDENTITY_SETTINGS.max_extrapolation_points :]
     lengths = arc_lengths_from_last_point(last_points)
     weights = lagrange_weights(lengths, _length_before_crushing(roles, last_points, lengths, length))
     return weighted_sum_of_curve_points(roles, last_points, weights, mesh_of_orbit(last_points[-1].orbit))
@@ -34,8 +35,8 @@ def weighted_sum_of_curve_points(
     weights: Sequence[float] | Array,
     mesh: OrbitMesh,
 ) -> tuple[Orbit, float]:
-    """Returns (orbit on `mesh`, row coordinate): sums of `points` with weights, (points,); raises
-    Unsolvable."""
+    """Returns (orbit on `mesh`, row coordinate): sums over `points` with the weights `weights`, (points,);
+    raises Unsolvable."""
     values = np.dot(weights, [mesh.interpolated_orbit(point.orbit).values for point in points])
     row, parameters = _weighted_parameters(roles, points, weights)
     orbit = replace(mesh.interpolated_orbit(points[-1].orbit), values=values)
@@ -79,9 +80,9 @@ def orbit_with_parameters(orbit: Orbit, parameters: dict[str, float]) -> Orbit:
 def _weighted_parameters(
     roles: ParameterRoles, points: Sequence[SolvedCurvePoint], weights: Sequence[float] | Array
 ) -> tuple[float, dict[str, float]]:
-    """Returns (row coordinate, values of both parameters by name): sums of `points` with weights,
-    (points,)."""
+    """Returns (row coordinate, values of both parameters by name): sums over `points` with the weights
+    `weights`, (points,)."""
     branch_axis, row_axis = roles.axes_of(points[-1])
     row = float(np.dot(weights, [point.row_coordinate for point in points]))
-    value = float(np.dot(weights, [point.branch_parameter for point in points]))
-    return row, {branch_axis.name: value, row_axis.name: row_axis.value(row)}
+    value = float(np.dot(weights, [point.branch_parameter_value for point in points]))
+    return row, {branch_axis.parameter_name: value, row_axis.parameter_name: row_axis.value(row)}

@@ -34,9 +34,9 @@ CURVE_STEP_CONTROL = StepControl(
     min_length=1e-4,
     target_prediction_error=3e-3,
     max_prediction_error=0.1,
-    prediction_order=CURVE_IDENTITY_SETTINGS.max_interpolated_points,
+    prediction_order=CURVE_IDENTITY_SETTINGS.max_extrapolation_points,
     max_angle=0.55,
-    max_length_ratio=2.0,
+    max_successive_length_ratio=2.0,
     max_solutions=400,
 )
 """Step length control; a step has the three components of `ArcLengthScale` and the row coordinate, 0 to 1."""
@@ -50,10 +50,10 @@ class SpecialCurveProblem(CurvePointSolver):
     first_step_sign_in_row_parameter: float = 1.0
 
     def follow_from(self, special: SpecialPoint, row: float) -> tuple[list[SolvedCurvePoint], CurveEndReason]:
-        """Returns (points of the curve from `special`, on the row with the parameter value `row`; reason for
-        its end); raises Unsolvable."""
+        """Returns (points, reason): points of the curve from the special point `special`, which lies on the
+        row with the parameter value `row`, and reason for the end of the curve; raises Unsolvable."""
         first = first_point_of_curve(
-            special, self.axis_along_row.name, self.row_parameter_axis, row, self.workspace
+            special, self.axis_along_row.parameter_name, self.row_parameter_axis, row, self.workspace
         )
         curve = follow_curve(self, first, CURVE_STEP_CONTROL, self._report_progress)
         points = points_with_row_parameter_extrema(self, points_with_parameter_errors(curve.solutions))
@@ -73,13 +73,13 @@ class SpecialCurveProblem(CurvePointSolver):
 
     def _report_progress(self, points: Sequence[SolvedCurvePoint]) -> None:
         """Reports the last point of a curve to the progress display."""
-        place = f"{self.row_parameter_axis.name} = {points[-1].row_parameter:.5g}"
+        place = f"{self.row_parameter_axis.parameter_name} = {points[-1].row_parameter_value:.5g}"
         text = f"{place}, {counted(len(points), 'point')}"
         report(lambda: SolvePosition(text))
 
     def step(self, previous: Sequence[SolvedCurvePoint], length: float) -> StepResult[SolvedCurvePoint]:
         """The next point, with prediction error and cosine of the angle between the last two steps; raises
-        Unsolvable. previous: points so far. length: arc length; on the first step, change of the row
+        Unsolvable. previous: points solved so far. length: arc length; on the first step, change of the row
         coordinate. On the first step the cosine is 1."""
         if len(previous) == 1:
             last, direction = self._first_roles_and_direction(previous[0])
@@ -122,16 +122,16 @@ class SpecialCurveProblem(CurvePointSolver):
     ) -> list[SolvedCurvePoint]:
         """The last points of `previous`, with the roles of a step of the arc length `length`."""
         exchanged = self.need_exchange_beyond(previous, length)
-        last_points = previous[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
+        last_points = previous[-CURVE_IDENTITY_SETTINGS.max_extrapolation_points :]
         return [self.with_roles(point, exchanged) for point in last_points]
 
     def margins_to_curve_end(self, point: SolvedCurvePoint) -> Array:
-        """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, 1 -
-        `RodMaterial.force_over_crushing_force` - `crushing_margin`, smallest h1, largest tip y minus
-        `min_amplitude`."""
+        """Margins of a point, (7,); the curve ends where a margin becomes 0. They are: distances from the
+        four edges, 1 - `RodMaterial.force_over_crushing_force` - `crushing_margin`, smallest h1, largest tip
+        y minus `min_amplitude`."""
         # The edges belong to the plane, whichever parameter varies along the branch.
         plane_point = self.with_unexchanged_roles(point)
-        x = self.axis_along_row.scaled_coordinate(plane_point.branch_parameter)
+        x = self.axis_along_row.scaled_coordinate(plane_point.branch_parameter_value)
         y = plane_point.row_coordinate
         rod = point.orbit.form.rod
         crushing = (
@@ -180,8 +180,8 @@ class SpecialCurveProblem(CurvePointSolver):
         return replace(point, measured_error=outer.measured_error and outer.measured_error.for_next_point)
 
     def is_closed_by(self, previous: Sequence[SolvedCurvePoint], point: SolvedCurvePoint) -> bool:
-        """Whether a curve, with more than `min_points_of_closed_curve` points, passes its first point on this
-        step."""
+        """Whether a curve, with more than `min_points_of_closed_curve` points, passes its first point on the
+        step from `previous[-1]` to `point`."""
         exchanged = self.are_exchanged_at(point)
         first, last = (self.with_roles(previous[i], exchanged) for i in (0, -1))
         step = point.step_from(last)

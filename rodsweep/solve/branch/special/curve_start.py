@@ -54,7 +54,7 @@ def first_point_of_curve(
         mesh,
         order=ceil(CURVE_START_SETTINGS.element_order_ratio * mesh.order),
         interval_count=ceil(CURVE_START_SETTINGS.time_interval_count_ratio * mesh.interval_count),
-        stage_count=cheapest_stage_count(CURVE_SECANT_SETTINGS.accuracy),
+        stage_count=cheapest_stage_count(CURVE_SECANT_SETTINGS.relative_parameter_accuracy),
     )
     orbit = first_point.interpolated_orbit(orbit)
     min_deflection_unit = (
@@ -71,8 +71,8 @@ def first_point_of_curve(
         scale=scale,
         branch_direction=derivative / np.linalg.norm(derivative),
         row_coordinate=row_coordinate,
-        branch_parameter=special.parameter_value,
-        row_parameter=row,
+        branch_parameter_value=special.parameter_value,
+        row_parameter_value=row,
     )
     family = CycleFamily.near_point(special.kind, row_axis, start, workspace)
     # Along the branch, because the row is fixed at the first point.

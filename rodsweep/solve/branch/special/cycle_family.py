@@ -24,7 +24,7 @@ from .curve_prediction import orbit_with_parameters
 from .secant_method_across_curve import SecantSearch
 from .solved_curve_point import (
     CURVE_SECANT_SETTINGS,
-    MeasuredCurveError,
+    CurveErrorCalibration,
     NormalDerivatives,
     SearchLine,
     SolvedCurvePoint,
@@ -59,10 +59,10 @@ class CycleFamily:
         )
         return cls(kind, row_axis, point.scale, point.branch_direction, has_small_cycles, workspace)
 
-    def orbit_at_row(self, orbit: Orbit, row_coordinate: float) -> Orbit:
+    def unsolved_orbit_at_row(self, orbit: Orbit, row_coordinate: float) -> Orbit:
         """The orbit with unchanged values, for the rod at `row_coordinate`; raises Unsolvable."""
         return orbit_with_parameters(
-            orbit, {self.row_parameter_axis.name: self.row_parameter_axis.value(row_coordinate)}
+            orbit, {self.row_parameter_axis.parameter_name: self.row_parameter_axis.value(row_coordinate)}
         )
 
     def test_function(self, matrix: BorderedMatrix) -> FoldTestFunction | TorusTestFunction:
@@ -118,7 +118,8 @@ class CycleFamily:
         coarser_point = self.corrected_point(start, row_coordinate, line, derivatives)
         if previous and previous.measured_error and previous.measured_error.applies_at(coarser_point):
             return replace(coarser_point, measured_error=previous.measured_error.for_next_point)
-        # Each finer mesh serves twice: for the error of the coarser point, then as the coarser one.
+        # Each finer mesh is used twice: for the error of the point on the coarser mesh, then as the coarser
+        # mesh.
         for _ in range(CURVE_SECANT_SETTINGS.max_finer_meshes):
             mesh = mesh_of_orbit(coarser_point.orbit)
             finer_mesh = self.finer_mesh_than(coarser_point)
@@ -131,15 +132,17 @@ class CycleFamily:
             # displacement from the error.
             chord_change = line.chord_slope * (fine_point.row_coordinate - coarser_point.row_coordinate)
             parameter_difference = abs(
-                fine_point.branch_parameter - coarser_point.branch_parameter - chord_change
+                fine_point.branch_parameter_value - coarser_point.branch_parameter_value - chord_change
             )
             error = (
                 CURVE_SECANT_SETTINGS.error_per_mesh_difference * parameter_difference
-                + CURVE_SECANT_SETTINGS.min_relative_error * abs(fine_point.branch_parameter)
+                + CURVE_SECANT_SETTINGS.min_relative_error * abs(fine_point.branch_parameter_value)
             )
-            if error <= CURVE_SECANT_SETTINGS.accuracy * abs(fine_point.branch_parameter):
-                errors = MeasuredCurveError(
-                    error / abs(coarser_point.branch_parameter),
+            if error <= CURVE_SECANT_SETTINGS.relative_parameter_accuracy * abs(
+                fine_point.branch_parameter_value
+            ):
+                errors = CurveErrorCalibration(
+                    error / abs(coarser_point.branch_parameter_value),
                     smooth_space_and_time_tails(coarser_point.orbit),
                     mesh,
                 )

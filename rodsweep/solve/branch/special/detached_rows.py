@@ -14,7 +14,7 @@ from typing import ClassVar
 
 from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
-from ...continuation.curve_search import TracedCurves
+from ...continuation.curves_through_seeds import TracedCurves
 from .curve_ends import are_identical_curves
 from .folds_beyond_range import FoldsBeyondRange, RowWorkItems
 from .row_crossing import RowCrossing
@@ -22,33 +22,32 @@ from .special_curve_tracer import SpecialCurveTracer
 from .special_curves import CurveEndReason, SpecialPointCurve
 from .special_point import RowSpecialPoint, SpecialPoint
 
-MAX_DIAGRAM_STAGES = 8
+MAX_CURVE_AND_ROW_STAGES = 8
 """Maximum number of stages of a diagram: stages of curves and stages of rows alternate, and each finds fewer
 branches than the stage before. `show` names the rows with cycles that are not reached."""
 WorkItemResults = Mapping[int, dict[str, Array]]
-"""Results of work items, by number; the result of a row has the variables of the row by name, or is
-empty."""
+"""Results of work items, by number; the result of a row has the variables of the row by name, or is empty."""
 SpecialPointsOfRowFunction = Callable[[int, dict[str, Array]], list[RowSpecialPoint]]
 """Function from (index of a row, its variables) to the folds and torus points of the row."""
 
 
 @dataclass(frozen=True, slots=True)
 class RowsWithDetachedBranches(RowWorkItems):
-    """Rows that are solved again. crossings: all points known so far at which curves cross a row without a
-    special point of its own, by index of the row."""
+    """Rows that are solved again. unexplained_crossings: all points known so far at which curves
+    cross a row without a special point of its own, by index of the row."""
 
     done_item_phrase: ClassVar[str] = (
         "row solved again with branches found from curves of folds and torus points"
     )
     """Noun for one row and what was done with it, for the report at the end of a run."""
-    label: ClassVar[str] = "detached branches"
+    item_label_prefix: ClassVar[str] = "detached branches"
     """Text before the row parameter in the progress display."""
 
-    crossings: Mapping[int, tuple[RowCrossing, ...]]
+    unexplained_crossings: Mapping[int, tuple[RowCrossing, ...]]
 
     def branch_starts_of_row(self, row: int) -> tuple[SpecialPoint, ...]:
         """Special points from which branches of the row with the index `row` are followed."""
-        return tuple(crossing.special_point for crossing in self.crossings[row])
+        return tuple(crossing.special_point for crossing in self.unexplained_crossings[row])
 
 
 DiagramStage = SpecialCurveTracer | RowsWithDetachedBranches | FoldsBeyondRange
@@ -56,7 +55,7 @@ DiagramStage = SpecialCurveTracer | RowsWithDetachedBranches | FoldsBeyondRange
 
 @dataclass(frozen=True, slots=True)
 class DiagramStages:
-    """The stages of a diagram whose first stage traces the curves of `first_stage`. special_points_of_row: a
+    """The stages of a diagram. first_stage: tracer of the curves of the first stage. special_points_of_row: a
     `SpecialPointsOfRowFunction`. axis_extended_beyond_range: axis of the parameter along the rows, as far as
     branches are followed beyond the range; None: curves are not followed beyond the range.
     values_of_rows_leaving_range: value of the row parameter, by index, of the rows with branches that leave
@@ -70,7 +69,7 @@ class DiagramStages:
     def stages(self, results: WorkItemResults) -> list[DiagramStage]:
         """All stages that follow from the results of work items; only the last stage may be incomplete."""
         stages: list[DiagramStage] = [self.first_stage]
-        while len(stages) < MAX_DIAGRAM_STAGES and not stages[-1].items_to_solve(results):
+        while len(stages) < MAX_CURVE_AND_ROW_STAGES and not stages[-1].items_to_solve(results):
             next_stage = self._stage_after(stages, results)
             if next_stage is None:
                 break
@@ -89,15 +88,16 @@ class DiagramStages:
         new_points = self._new_special_points(stages, last_stage, results)
         if not new_points:
             return self._stage_of_folds_beyond_range(stages, results)
-        known_points = (*self.first_stage.special_points, *self._special_points_of_rows(stages, results))
-        # The tracer joins both lists, so a point in both would be met twice.
+        known_points = (*self.first_stage.special_points, *self._points_of_repeated_rows(stages, results))
+        rows = last_stage.unexplained_crossings
+        # The tracer joins both lists, so a point in both would be counted twice.
         known_points = tuple(point for point in known_points if point not in new_points)
         return replace(
             self.first_stage,
             first_item_number=last_stage.end_item_number,
             special_points=new_points,
             special_points_not_to_trace=known_points,
-            branch_starts_by_row={row: last_stage.branch_starts_of_row(row) for row in last_stage.crossings},
+            branch_starts_by_row={row: last_stage.branch_starts_of_row(row) for row in rows},
         )
 
     def _stage_of_folds_beyond_range(
@@ -115,7 +115,7 @@ class DiagramStages:
             return None
         return FoldsBeyondRange(
             stages[-1].end_item_number,
-            self.first_stage.row_parameter_axis.name,
+            self.first_stage.row_parameter_axis.parameter_name,
             self.values_of_rows_leaving_range,
         )
 
@@ -131,7 +131,7 @@ class DiagramStages:
         )
         if not points:
             return None
-        known_points = (*self.first_stage.special_points, *self._special_points_of_rows(stages, results))
+        known_points = (*self.first_stage.special_points, *self._points_of_repeated_rows(stages, results))
         return replace(
             self.first_stage,
             axis_along_row=self.axis_extended_beyond_range,
@@ -140,7 +140,7 @@ class DiagramStages:
             special_points_not_to_trace=tuple(point for point in known_points if point not in points),
         )
 
-    def _special_points_of_rows(
+    def _points_of_repeated_rows(
         self, stages: Sequence[DiagramStage], results: WorkItemResults
     ) -> list[RowSpecialPoint]:
         """Special points of all rows that were solved again."""
@@ -162,22 +162,22 @@ class DiagramStages:
             if isinstance(stage, SpecialCurveTracer):
                 for point in stage.special_points:
                     points_by_row.setdefault(point.row_index, []).append(point)
-        for row, crossings in detached_rows.crossings.items():
+        for row, crossings in detached_rows.unexplained_crossings.items():
             points_by_row.setdefault(row, []).extend(crossing.special_point for crossing in crossings)
         return [
             point
-            for point in self._special_points_of_rows([detached_rows], results)
+            for point in self._points_of_repeated_rows([detached_rows], results)
             if not any(point.is_same_as(other) for other in points_by_row.get(point.row_index, ()))
         ]
 
-    def rows_solved_again(self, results: WorkItemResults) -> dict[int, dict[str, Array]]:
+    def variables_of_rows_solved_again(self, results: WorkItemResults) -> dict[int, dict[str, Array]]:
         """Variables of all rows that were solved again, (...,) each, by index of the row."""
         return _rows_solved_again(self.stages(results), results)
 
     def count_of_curves_lost_beyond_range(self, results: WorkItemResults) -> int:
         """Number of ends at which curves were lost while they were followed beyond the range, where they may
         lead to further rows, plus the number of special points from which no such curve could be followed;
-        valid as `curves`. results: arrays, (...,) each, by name and item."""
+        valid if the last stage is complete. results: arrays, (...,) each, by name and item."""
         count = 0
         for stage in self.stages(results):
             if (
@@ -234,9 +234,9 @@ def _rows_crossed_by_curves(
     """The rows that the curves of `tracer` cross without a special point there; None if there are none."""
     known_crossings: dict[int, tuple[RowCrossing, ...]] = {}
     for stage in stages:
-        known_crossings |= stage.crossings if isinstance(stage, RowsWithDetachedBranches) else {}
+        known_crossings |= stage.unexplained_crossings if isinstance(stage, RowsWithDetachedBranches) else {}
     new_crossings: dict[int, tuple[RowCrossing, ...]] = {}
-    for crossing in tracer.row_crossings(results):
+    for crossing in tracer.unexplained_crossings(results):
         row = crossing.row_index
         # A row solved again starts from all points known so far, because its result replaces the earlier one.
         row_crossings = new_crossings.get(row) or known_crossings.get(row, ())
@@ -246,5 +246,5 @@ def _rows_crossed_by_curves(
         return None
     row_values = {row: tracer.values_of_rows_with_known_branches[row] for row in new_crossings}
     return RowsWithDetachedBranches(
-        tracer.end_item_number, tracer.row_parameter_axis.name, row_values, new_crossings
+        tracer.end_item_number, tracer.row_parameter_axis.parameter_name, row_values, new_crossings
     )

@@ -25,7 +25,8 @@ Unsolvable."""
 
 
 def unstable_multiplier_count(point: BranchCycle) -> int:
-    """Number of nontrivial multipliers of a cycle, over the solved time interval, outside the unit circle."""
+    """Number of nontrivial multipliers of the cycle `point`, over the solved time interval, outside the unit
+    circle."""
     return int((np.abs(point.multipliers_over_solved_time_interval) > 1).sum())
 
 
@@ -51,16 +52,16 @@ def special_kinds_between(start: BranchCycle, end: BranchCycle) -> DetectedKinds
     count_tolerance = 1 if _has_multiplier_near_one(start) or _has_multiplier_near_one(end) else 0
     # A pair changes the count by two; one more or less may be a multiplier near 1.
     if not kinds and count_change - count_tolerance > 1:
-        # Two real multipliers that cross together also change the count by two, but are no torus point.
+        # Two real multipliers that cross together also change the count by two, but are not a torus point.
         is_pair = count_change == 2 and all(map(_has_complex_pair, (start, end)))
         return DetectedKinds([SpecialPointKind.torus], is_pair)
     # With two kinds in one step the changes may cancel, so the step is halved instead.
     return DetectedKinds(kinds, len(kinds) <= 1 and abs(count_change - len(kinds)) <= count_tolerance)
 
 
-def fold_and_breaking_between(start: BranchCycle, end: BranchCycle) -> list[SpecialPointKind]:
-    """Kinds of the special points between two cycles at which further branches may begin or a branch turns
-    back: fold, and symmetry breaking."""
+def fold_and_breaking_kinds_between(start: BranchCycle, end: BranchCycle) -> list[SpecialPointKind]:
+    """Kinds of those special points between the cycles `start` and `end` at which further branches may begin
+    or a branch turns back: fold and symmetry breaking."""
     # Torus points are left out: no branch of cycles begins at one, and the branch does not turn.
     kinds = (
         [SpecialPointKind.fold] if start.parameter_per_arc_length * end.parameter_per_arc_length < 0 else []
@@ -74,12 +75,13 @@ def fold_and_breaking_between(start: BranchCycle, end: BranchCycle) -> list[Spec
 
 
 def _count_of_multipliers_below_minus_one(point: BranchCycle) -> int:
-    """Number of real multipliers of a cycle, over the solved time interval, that are less than -1."""
+    """Number of real multipliers of the cycle `point`, over the solved time interval, that are less than
+    -1."""
     return int((_real_multipliers(point) < -1).sum())
 
 
 def _real_multipliers(point: BranchCycle) -> Array:
-    """The real multipliers of a cycle over the solved time interval, (multipliers,)."""
+    """The real multipliers of the cycle `point` over the solved time interval, (multipliers,)."""
     h = point.multipliers_over_solved_time_interval
     # Eigenvalue solvers return a real double multiplier as a pair with a tiny imaginary part.
     return h.real[np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h)]
@@ -89,7 +91,7 @@ def _has_multiplier_near_one(point: BranchCycle) -> bool:
     return bool(
         (
             np.abs(point.multipliers_over_solved_time_interval - 1)
-            < SPECIAL_POINT_SETTINGS.max_distance_from_multiplier_one
+            < SPECIAL_POINT_SETTINGS.max_undecided_multiplier_minus_one
         ).any()
     )
 
@@ -100,13 +102,13 @@ def _has_complex_pair(point: BranchCycle) -> bool:
 
 
 def lie_on_one_branch(start: BranchCycle, end: BranchCycle) -> bool:
-    """Whether two successive cycles can lie on one smooth branch; False if the step leads to another branch,
-    which nearly touches the first one.
+    """Whether the successive cycles `start` and `end` can lie on one smooth branch; False if the step leads
+    to another branch, which nearly touches the first one.
 
     Along a branch the derivative of the parameter, divided by the product of 1 - m over the nontrivial
-    multipliers m, is finite and not 0: both vanish at a fold. Its sign changes only at a cycle where two
-    branches meet. If the sign is uncertain, because a multiplier is 1 within its error, the prediction error
-    of `end` decides, unless nothing changes.
+    multipliers m, is finite and not 0: both vanish at a fold. The sign of this quotient changes only at a
+    cycle where two branches meet. If the sign is uncertain, because a multiplier is 1 within its error, the
+    prediction error of `end` decides, unless nothing changes.
     """
     has_fold = start.parameter_per_arc_length * end.parameter_per_arc_length < 0
     change = _count_of_multipliers_above_one(start) - _count_of_multipliers_above_one(end)
@@ -118,25 +120,27 @@ def lie_on_one_branch(start: BranchCycle, end: BranchCycle) -> bool:
 
 
 def _has_multiplier_indistinct_from_trivial(point: BranchCycle) -> bool:
-    """Whether a nontrivial multiplier of the cycle cannot be told from the trivial one on this mesh."""
+    """Whether a nontrivial multiplier of the cycle `point` equals the trivial multiplier within the error of
+    its mesh."""
     error = REFINEMENT_SETTINGS.multiplier_error_per_matrix_distance * point.cycle.trivial_multiplier_error
     return bool((np.abs(point.multipliers_over_solved_time_interval - 1) <= error).any())
 
 
 def _count_of_multipliers_above_one(point: BranchCycle) -> int:
-    """Number of real multipliers of a cycle, over the solved time interval, that are larger than 1."""
+    """Number of real multipliers of the cycle `point`, over the solved time interval, that are larger than
+    1."""
     return int((_real_multipliers(point) > 1).sum())
 
 
-def special_points_between(
+def special_points_and_completeness(
     start: BranchCycle,
     end: BranchCycle,
     cycle_at: CycleAtArcLength,
     accuracy: float,
     halvings: int = 0,
 ) -> tuple[list[SpecialPoint], bool]:
-    """Returns (points, are_complete): special points between two cycles, in order, and whether these points
-    explain the change of the number of multipliers outside the unit circle.
+    """Returns (points, are_complete): special points between the cycles `start` and `end`, in order, and
+    whether these points explain the change of the number of multipliers outside the unit circle.
 
     cycle_at: function that solves a cycle at an arc length between the two cycles. accuracy: relative
     accuracy of the branch. halvings: number of halvings so far. The step is halved if the multipliers show
@@ -154,10 +158,10 @@ def special_points_between(
         except Unsolvable:
             pass
         else:
-            first_points, first_complete = special_points_between(
+            first_points, first_complete = special_points_and_completeness(
                 start, middle, cycle_at, accuracy, halvings + 1
             )
-            second_points, second_complete = special_points_between(
+            second_points, second_complete = special_points_and_completeness(
                 middle, end, cycle_at, accuracy, halvings + 1
             )
             return first_points + second_points, first_complete and second_complete

@@ -21,7 +21,7 @@ class RowWorkItems:
 
     progress_noun: ClassVar[str] = "rows"
     """Plural noun for the work items in the progress display."""
-    label: ClassVar[str]
+    item_label_prefix: ClassVar[str]
     """Text before the row parameter in the progress display."""
 
     first_item_number: int
@@ -44,7 +44,7 @@ class RowWorkItems:
     def item_label(self, item: int) -> str:
         """Text for a row in the progress display."""
         value = self.row_parameter_values[self.row_index_of_item(item)]
-        return f"{self.label} of {self.row_parameter_name} = {value:.5g}"
+        return f"{self.item_label_prefix} of {self.row_parameter_name} = {value:.5g}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,7 @@ class FoldsBeyondRange(RowWorkItems):
 
     done_item_phrase: ClassVar[str] = "row with branches that leave the range"
     """Noun for one row and what was done with it, for the report at the end of a run."""
-    label: ClassVar[str] = "folds beyond the range"
+    item_label_prefix: ClassVar[str] = "folds beyond the range"
     """Text before the row parameter in the progress display."""
 
     def branch_starts_of_row(self, row: int) -> tuple[SpecialPoint, ...]:

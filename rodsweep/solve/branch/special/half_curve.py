@@ -19,10 +19,11 @@ def trace_half_curve(
     special_points: Sequence[RowSpecialPoint],
     values_of_rows_with_known_branches: Mapping[int, float],
 ) -> TracedHalfCurve:
-    """One half of a curve, from the point in `located` that agrees with `special_point`; the field
-    `half_curve` is None if no point agrees or after a failure. located: special points of the row, with
-    cycles. special_points: special points of all rows. values_of_rows_with_known_branches: value of the row
-    parameter, by index, of the rows whose branches are all known."""
+    """One half of a curve, from the point in `located` that agrees with `special_point`; in the result,
+    `half_curve` is None if no point agrees or after a failure. problem: plane, kind and first direction of
+    the half curve. located: special points of the row, with cycles. special_points: special points of all
+    rows. values_of_rows_with_known_branches: value of the row parameter, by index, of the rows whose branches
+    are all known."""
     row_length = abs(problem.axis_along_row.parameter_per_scaled_coordinate(special_point.parameter_value))
     # The stored point has no cycle; the located point that has one is recognised by its values.
     matches = [
@@ -40,7 +41,7 @@ def trace_half_curve(
         points, end = problem.follow_from(matches[0], special_point.row_parameter_value)
     except (*FAILURE_EXCEPTIONS, ValueError):  # a logarithmic axis refuses a value that is not positive
         return TracedHalfCurve(None)
-    distances, crossings = _special_points_and_row_crossings(
+    distances, crossings = _point_distances_and_row_crossings(
         problem, points, special_points, values_of_rows_with_known_branches
     )
     return TracedHalfCurve(
@@ -48,7 +49,7 @@ def trace_half_curve(
     )
 
 
-def _special_points_and_row_crossings(
+def _point_distances_and_row_crossings(
     problem: SpecialCurveProblem,
     points: Sequence[SolvedCurvePoint],
     special_points: Sequence[RowSpecialPoint],
@@ -106,7 +107,7 @@ def _distances_along_row(
 ) -> dict[int, float]:
     """Distance along the row, in row lengths, of each point of `special_points` that agrees with the point
     `crossing` of a curve on the same row."""
-    coordinate = problem.axis_along_row.scaled_coordinate(crossing.branch_parameter)
+    coordinate = problem.axis_along_row.scaled_coordinate(crossing.branch_parameter_value)
     distances = {
         i: abs(coordinate - problem.axis_along_row.scaled_coordinate(special_point.parameter_value))
         for i, special_point in special_points.items()
@@ -126,7 +127,7 @@ def _may_lie_on_curve_between(
     """Whether the special point `special_point` may lie on a curve between its successive points `a` and
     `b`."""
     x = problem.axis_along_row.scaled_coordinate(special_point.parameter_value)
-    ends = sorted(problem.axis_along_row.scaled_coordinate(p.branch_parameter) for p in (a, b))
+    ends = sorted(problem.axis_along_row.scaled_coordinate(p.branch_parameter_value) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
     margin = CURVE_IDENTITY_SETTINGS.max_chord_distance_per_row_length
     # The curve may bulge beyond its chord, hence a margin in the parameter and in the period.

@@ -17,7 +17,7 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import mesh_limit_error
 from ...unsolvable import Unsolvable, WorkLimitReached
 from ..arc_length_step import BranchCycle
-from ..bordered.condition import moved_orbit
+from ..bordered.border_condition import moved_orbit
 from ..bordered.corrected_linearisation import nearby_bordered_matrix
 from ..bordered.scale import ArcLengthScale
 from .augmented.fold_and_torus_test_functions import TorusTestFunction, correct_until_converged
@@ -27,7 +27,7 @@ from .special_point_errors import (
     TestFunctionZero,
     first_mesh_for_special_point,
     next_finer_mesh,
-    parameter_difference,
+    parameter_error_from_meshes,
     special_point_at,
     unlocated_point,
     with_mesh_errors,
@@ -56,10 +56,10 @@ def test_function_value(kind: SpecialPointKind, segment: BranchSegment, solved: 
 
 
 def multiplier_test_function(kind: SpecialPointKind, h: Complex) -> float:
-    """Value of the test function of torus points, symmetry breakings or period doublings. h: multipliers over
-    the solved part of the period, (multipliers,). Torus point: |m| - 1 for the complex multiplier m nearest
-    to the unit circle; raises Unsolvable if all multipliers are real. Otherwise: the smallest |m + 1|,
-    negative if an odd number of real multipliers is less than -1."""
+    """Value of the test function of torus points, symmetry breakings or period doublings, by `kind`. h:
+    multipliers over the solved part of the period, (multipliers,). Torus point: |m| - 1 for the complex
+    multiplier m nearest to the unit circle; raises Unsolvable if all multipliers are real. Otherwise: the
+    smallest |m + 1|, negative if an odd number of real multipliers is less than -1."""
     is_real = np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h)
     if kind != SpecialPointKind.torus:
         # The product of h + 1 changes sign only where a real multiplier crosses -1.
@@ -74,8 +74,8 @@ def multiplier_test_function(kind: SpecialPointKind, h: Complex) -> float:
 def _test_value_at_end(
     kind: SpecialPointKind, scale: ArcLengthScale, tangent: Array, point: BranchCycle
 ) -> float:
-    """Value of the test function of a kind at `point`, an end of a segment; raises Unsolvable. scale,
-    tangent: scale and tangent, (3,), at the start of the segment."""
+    """Value of the test function of special points of the kind `kind` at `point`, an end of a segment; raises
+    Unsolvable. scale, tangent: scale and tangent, (3,), at the start of the segment."""
     if kind == SpecialPointKind.fold:
         # The variable of the search is the arc length along `tangent`.
         rate = float(scale.directional_derivative(point.orbit, point.tangent) @ tangent)
@@ -88,10 +88,10 @@ def _test_value_at_end(
 def special_point_between(
     kind: SpecialPointKind, start: BranchCycle, end: BranchCycle, accuracy: float
 ) -> SpecialPoint:
-    """The special point of a kind between two cycles, to the smaller of the relative accuracies `accuracy`
-    and `SPECIAL_POINT_SETTINGS.accuracy`, or with a larger error if no allowed mesh suffices or the limit of
-    the work is reached. A point that is not located has a message, and the parameter difference of the two
-    cycles as error."""
+    """The special point of a kind between the cycles `start` and `end`, to the smaller of the relative
+    accuracies `accuracy` and `SPECIAL_POINT_SETTINGS.accuracy`, or with a larger error if no allowed mesh
+    suffices or the limit of the work is reached. A point that is not located has a message, and the parameter
+    difference of the two cycles as error."""
     required_accuracy = min(accuracy, SPECIAL_POINT_SETTINGS.accuracy)
     try:
         if kind == SpecialPointKind.fold:
@@ -109,7 +109,9 @@ def special_point_between(
             except Unsolvable:
                 pass  # the fold is bracketed instead
         segment = BranchSegment(start, end)
-        return _special_point_near(kind, segment, _bracketed_zero(kind, segment), required_accuracy)[0]
+        return _special_point_near(
+            kind, segment, _bracketed_zero_and_slope(kind, segment), required_accuracy
+        )[0]
     except Unsolvable as reason:
         return unlocated_point(kind, start, end, f"the special point ({kind.name}) is not located: {reason}")
 
@@ -117,9 +119,9 @@ def special_point_between(
 def _special_point_near(
     kind: SpecialPointKind, segment: BranchSegment, guess: tuple[float, float], required_accuracy: float
 ) -> tuple[SpecialPoint, float]:
-    """Returns (special point of a kind, its arc length on `segment`), to a relative accuracy, or with a
-    larger error if no allowed mesh suffices or the limit of the work is reached; raises Unsolvable. guess:
-    (arc length near the point, slope of the test function there)."""
+    """Returns (special point of a kind, its arc length on `segment`), to the relative accuracy
+    `required_accuracy`, or with a larger error if no allowed mesh suffices or the limit of the work is
+    reached; raises Unsolvable. guess: (arc length near the point, slope of the test function there)."""
     length, slope = guess
     name = segment.start.scale.parameter_name
     mesh = first_mesh_for_special_point(segment.end.calibration, required_accuracy)
@@ -138,7 +140,7 @@ def _special_point_near(
         point = special_point_at(kind, zero, name)
         difference_ratio = 1.0
         if coarser_point is not None and coarser_zero is not None:
-            difference_ratio = parameter_difference(point, coarser_point) / (
+            difference_ratio = parameter_error_from_meshes(point, coarser_point) / (
                 required_accuracy * abs(point.parameter_value)
             )
             point = with_mesh_errors(point, coarser_point, (coarser_zero, zero), segment, required_accuracy)
@@ -153,9 +155,9 @@ def _special_point_near(
     return point, length
 
 
-def _bracketed_zero(kind: SpecialPointKind, segment: BranchSegment) -> tuple[float, float]:
-    """Returns (arc length of an approximate zero, slope of the test function there), by bracketing; raises
-    Unsolvable."""
+def _bracketed_zero_and_slope(kind: SpecialPointKind, segment: BranchSegment) -> tuple[float, float]:
+    """Returns (arc length of an approximate zero of the test function of `kind` on `segment`, slope of this
+    function there), by bracketing; raises Unsolvable."""
     start = segment.start
     ends_of_segment = ((0.0, start), (segment.length, segment.end))
     values = {
@@ -206,7 +208,7 @@ def _zero_by_secants(
             < abs(step)
             <= SPECIAL_POINT_SETTINGS.max_stalled_step_per_branch_step * segment.length
         ):
-            _, orbit, tangent = segment.last_solved_cycle
+            _, orbit, tangent = segment.last_arc_length_cycle_and_tangent
             change = step * tangent
             if kind == SpecialPointKind.fold:
                 change[-1] /= 2  # the derivative of the parameter decreases linearly to 0 along the step

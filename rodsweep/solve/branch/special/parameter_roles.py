@@ -26,12 +26,13 @@ from .special_point import SpecialPointKind
 class ParameterRoleSettings:
     """Settings for the choice of the parameter along the branch."""
 
-    max_slope_to_exchange_roles: float = 0.02
+    max_row_parameter_slope_to_exchange: float = 0.02
     """The parameters exchange their roles where the relative change of the row parameter along the curve is
     at most this number times the relative change of the parameter along a row. With larger slopes the errors
     of the parameter along a row are smaller without the exchange."""
     min_coordinate_unit_per_axis_length: float = 0.01
-    """Smallest unit of a parameter coordinate, divided by the length of its axis: parameters may be 0."""
+    """Smallest unit of a parameter coordinate, divided by the length of its axis; the coordinate itself may
+    be 0."""
 
 
 PARAMETER_ROLE_SETTINGS = ParameterRoleSettings()
@@ -39,10 +40,10 @@ PARAMETER_ROLE_SETTINGS = ParameterRoleSettings()
 
 @dataclass(frozen=True, slots=True)
 class ParameterRoles:
-    """The two axes of a plane, and points of a curve of special points with each of its two parameters as the
-    branch parameter. axis_along_row, row_parameter_axis: axes of the parameter along a row and of the row
-    parameter. In a point with exchanged roles `branch_parameter` is a value of the row parameter, and
-    `row_coordinate` a position on `axis_along_row`."""
+    """The two axes of a plane, and the choice of the parameter that is the branch parameter at points of a
+    curve of special points. axis_along_row, row_parameter_axis: axes of the parameter along a row and of the
+    row parameter. In a point with exchanged roles `branch_parameter_value` is a value of the row parameter,
+    and `row_coordinate` a position on `axis_along_row`."""
 
     kind: SpecialPointKind
     """Kind of the points of the curve; parameters exchange their roles only along curves of folds."""
@@ -51,7 +52,7 @@ class ParameterRoles:
 
     def are_exchanged_at(self, point: SolvedCurvePoint) -> bool:
         """Whether the row parameter is the branch parameter of `point`."""
-        return point.scale.parameter_name != self.axis_along_row.name
+        return point.scale.parameter_name != self.axis_along_row.parameter_name
 
     def axes_of(self, point: SolvedCurvePoint) -> tuple[PlaneAxis, PlaneAxis]:
         """(axis of the branch parameter, axis of the other parameter) of `point`."""
@@ -64,19 +65,19 @@ class ParameterRoles:
         if self.are_exchanged_at(point) == exchanged:
             return point
         other_axis, branch_axis = self.axes_of(point)
-        # The row parameter may be 0 on the curve, where its own size is no unit.
+        # The row parameter may be 0 on the curve, where its own size cannot be a unit.
         unit = self._min_coordinate_unit(branch_axis) if exchanged else 0.0
         return replace(
             point,
             # At a fold the branches along both parameters have the same direction.
             scale=ArcLengthScale.at_orbit(
-                point.orbit, branch_axis.name, point.scale.min_deflection_unit, unit
+                point.orbit, branch_axis.parameter_name, point.scale.min_deflection_unit, unit
             ),
-            row_coordinate=other_axis.scaled_coordinate(point.branch_parameter),
-            branch_parameter=point.row_parameter,
-            row_parameter=point.branch_parameter,
+            row_coordinate=other_axis.scaled_coordinate(point.branch_parameter_value),
+            branch_parameter_value=point.row_parameter_value,
+            row_parameter_value=point.branch_parameter_value,
             measured_error=None,
-            secant_error=0.0,
+            secant_parameter_error=0.0,
             normal_derivatives=None,
         )
 
@@ -85,9 +86,11 @@ class ParameterRoles:
         return self.with_roles(point, exchanged=False)
 
     def need_exchange_between(self, first: SolvedCurvePoint, second: SolvedCurvePoint) -> bool:
-        """Whether the parameters exchange their roles on the chord between two points of a curve."""
+        """Whether the parameters exchange their roles on the chord between the points `first` and `second` of
+        a curve."""
         changes = (
-            second.orbit.form.rod.coordinate(axis.name) - first.orbit.form.rod.coordinate(axis.name)
+            second.orbit.form.rod.coordinate(axis.parameter_name)
+            - first.orbit.form.rod.coordinate(axis.parameter_name)
             for axis in (self.axis_along_row, self.row_parameter_axis)
         )
         return self._is_row_parameter_almost_constant(second.orbit.form.rod, *changes)
@@ -98,13 +101,13 @@ class ParameterRoles:
         back between these chords and the parameter along a row does not."""
         last_points = [
             self.with_unexchanged_roles(point)
-            for point in points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
+            for point in points[-CURVE_IDENTITY_SETTINGS.max_extrapolation_points :]
         ]
         # Roles are compared in the plane, because earlier points may have exchanged roles.
         if self.need_exchange_between(*last_points[-2:]):
             return True
         rods = [point.orbit.form.rod for point in last_points]
-        names = self.axis_along_row.name, self.row_parameter_axis.name
+        names = self.axis_along_row.parameter_name, self.row_parameter_axis.parameter_name
         coordinates = np.array([[rod.coordinate(name) for name in names] for rod in rods])
         predicted_change = (
             lagrange_weights(arc_lengths_from_last_point(last_points), length) @ coordinates - coordinates[-1]
@@ -121,7 +124,7 @@ class ParameterRoles:
         is the parameter along a row. slope: `axis_slope_at` this point."""
         rod = point.orbit.form.rod
         changes = (
-            axis.path_variable_per_scaled_coordinate(getattr(rod, axis.name))
+            axis.path_variable_per_scaled_coordinate(getattr(rod, axis.parameter_name))
             for axis in (self.axis_along_row, self.row_parameter_axis)
         )
         # At the first point no chord exists yet, so the slope of the curve comes from the matrix.
@@ -134,11 +137,12 @@ class ParameterRoles:
         matrix = BorderedMatrix(point.orbit, point.scale, workspace)
         rod = point.orbit.form.rod
         branch_change, other_change = (
-            axis.path_variable_per_scaled_coordinate(getattr(rod, axis.name)) for axis in self.axes_of(point)
+            axis.path_variable_per_scaled_coordinate(getattr(rod, axis.parameter_name))
+            for axis in self.axes_of(point)
         )
-        # At a fold the parameter is stationary along the branch, so only the other one moves the fold.
+        # At a fold the parameter is stationary along the branch, so only the other parameter moves the fold.
         response = matrix.parameter_derivative_by_other_parameter(
-            self.axes_of(point)[1].name, point.branch_direction
+            self.axes_of(point)[1].parameter_name, point.branch_direction
         )
         return response * other_change / branch_change
 
@@ -150,14 +154,14 @@ class ParameterRoles:
             return False
         # Relative changes, because the two parameters may have ranges of very different size.
         line_ratio, row_ratio = (
-            abs(change) / max(abs(rod.coordinate(axis.name)), self._min_coordinate_unit(axis))
+            abs(change) / max(abs(rod.coordinate(axis.parameter_name)), self._min_coordinate_unit(axis))
             for axis, change in ((self.axis_along_row, line_change), (self.row_parameter_axis, row_change))
         )
-        return row_ratio <= PARAMETER_ROLE_SETTINGS.max_slope_to_exchange_roles * line_ratio
+        return row_ratio <= PARAMETER_ROLE_SETTINGS.max_row_parameter_slope_to_exchange * line_ratio
 
     def _min_coordinate_unit(self, axis: PlaneAxis) -> float:
         """Smallest unit of the coordinate of the parameter of `axis`."""
-        parameter = PARAMETERS[axis.name]
+        parameter = PARAMETERS[axis.parameter_name]
         # The limits may be values of a stiffness, whose coordinate is its inverse.
         length = abs(parameter.coordinate(axis.stop) - parameter.coordinate(axis.start))
         return PARAMETER_ROLE_SETTINGS.min_coordinate_unit_per_axis_length * float(length)

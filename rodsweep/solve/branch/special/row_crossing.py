@@ -24,21 +24,26 @@ class RowCrossing:
     def from_solved_point(
         cls, row_index: int, kind: SpecialPointKind, point: SolvedCurvePoint, error: float
     ) -> "RowCrossing":
-        """The crossing at the point `point` of a curve of special points of the kind `kind`. error: absolute
-        error of the parameter along a row at the neighbouring points of the curve."""
+        """The crossing with the row of index `row_index` at the point `point` of a curve of special points of
+        the kind `kind`. error: absolute error of the parameter along a row at the neighbouring points of the
+        curve."""
         special_point = SpecialPoint(
             kind=kind,
-            parameter_value=point.branch_parameter,
+            parameter_value=point.branch_parameter_value,
             period=point.orbit.period,
             tip_y_max=point.tip_y_max,
             # By chance the error at the neighbours may be below the accuracy of the crossing.
-            error=max(error, CURVE_SECANT_SETTINGS.accuracy * abs(point.branch_parameter)),
+            error=max(
+                error, CURVE_SECANT_SETTINGS.relative_parameter_accuracy * abs(point.branch_parameter_value)
+            ),
             orbit=point.orbit,
         )
         return cls(row_index, special_point)
 
     def arrays(self) -> dict[str, Array]:
-        """The crossing as named arrays: "crossing" (6,), then the arrays of the orbit."""
+        """The crossing as named arrays: "crossing", (6,), with the row index, the kind, parameter value,
+        tip_y_max and error of the special point, and `is_omega_always_unknown`; then the arrays of the
+        orbit."""
         point = self.special_point
         assert point.orbit is not None
         is_omega_always_unknown = point.orbit.form.is_omega_always_unknown
@@ -55,7 +60,7 @@ class RowCrossing:
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, Array]) -> "RowCrossing":
-        """The crossing from named arrays with the shapes that `arrays` gives, as "crossing" (6,)."""
+        """The crossing from the named arrays, (...,) each, that the method `arrays` returns."""
         row_index, kind, value, tip_y_max, error, is_omega_always_unknown = map(float, arrays["crossing"])
         orbit = orbit_from_arrays(arrays, bool(is_omega_always_unknown))
         point = SpecialPoint(

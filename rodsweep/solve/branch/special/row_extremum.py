@@ -24,8 +24,8 @@ ROW_EXTREMUM_SETTINGS = RowExtremumSettings()
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _PointWithSlope:
-    """A point of a curve with exchanged roles. slope: derivative of the position on the row axis with respect
-    to the position on the axis of the parameter along a row, along the curve."""
+    """A point of a curve with exchanged roles. slope: derivative, along the curve, of the position on the row
+    axis with respect to the position on the axis of the parameter along a row."""
 
     point: SolvedCurvePoint
     slope: float
@@ -50,7 +50,9 @@ def points_with_row_parameter_extrema(
         # The stored error belongs to the branch parameter, which is another one with exchanged roles.
         has_plane_error = not problem.are_exchanged_at(point)
         error = (
-            point.branch_parameter_error if has_plane_error else _error_along_row(problem, sloped_points, i)
+            point.branch_parameter_error
+            if has_plane_error
+            else _parameter_error_along_row(problem, sloped_points, i)
         )
         result.append(
             replace(
@@ -73,16 +75,16 @@ def points_with_row_parameter_extrema(
     return result
 
 
-def _error_along_row(
+def _parameter_error_along_row(
     problem: CurvePointSolver, sloped_points: Mapping[int, _PointWithSlope], i: int
 ) -> float:
-    """Absolute error of the parameter along a row at point i, at which only the error of the row parameter is
-    known."""
+    """Absolute error of the parameter along a row at point i of `sloped_points`, at which only the error of
+    the row parameter is known."""
     sloped_point = sloped_points[i]
     line_axis = problem.axis_along_row
     row_axis = problem.row_parameter_axis
     error = sloped_point.point.branch_parameter_error / abs(
-        row_axis.parameter_per_scaled_coordinate(sloped_point.point.branch_parameter)
+        row_axis.parameter_per_scaled_coordinate(sloped_point.point.branch_parameter_value)
     )
     # Near the extremum the slope alone would give an infinite error, so the curvature limits it.
     curvature = max(
@@ -90,19 +92,20 @@ def _error_along_row(
     )
     # The distance d along the row at which |slope| d + curvature d^2 / 2 is the error of the row coordinate.
     distance = 2 * error / (abs(sloped_point.slope) + sqrt(sloped_point.slope**2 + 2 * curvature * error))
-    return distance * abs(line_axis.parameter_per_scaled_coordinate(sloped_point.point.row_parameter))
+    return distance * abs(line_axis.parameter_per_scaled_coordinate(sloped_point.point.row_parameter_value))
 
 
 def _slope_change_rate(first: _PointWithSlope, second: _PointWithSlope) -> float:
-    """Change of the slope between two points, divided by the change of the position along a row."""
+    """Change of the slope from the point `first` to the point `second`, divided by the change of the position
+    along a row."""
     return (second.slope - first.slope) / (second.point.row_coordinate - first.point.row_coordinate)
 
 
 def _located_extremum(
     problem: CurvePointSolver, first: _PointWithSlope, second: _PointWithSlope
 ) -> SolvedCurvePoint:
-    """The extremum of the row parameter between two successive points of a curve, with the errors of both
-    parameters; raises Unsolvable."""
+    """The extremum of the row parameter between the successive points `first` and `second` of a curve, with
+    the errors of both parameters; raises Unsolvable."""
     slopes = first.slope, second.slope
     tolerance = ROW_EXTREMUM_SETTINGS.relative_slope_tolerance * abs(second.slope - first.slope)
 
@@ -122,13 +125,14 @@ def _located_extremum(
     line_axis = problem.axis_along_row
     # An extremum is displaced by the error of the slope over its rate of change.
     distance = slope_error / abs(_slope_change_rate(first, second))
-    # With exchanged roles `branch_parameter` is the row parameter.
+    # With exchanged roles `branch_parameter_value` is the row parameter.
     difference = CURVE_SECANT_SETTINGS.error_per_mesh_difference * abs(
-        fine.branch_parameter - point.branch_parameter
+        fine.branch_parameter_value - point.branch_parameter_value
     )
     return replace(
         problem.with_unexchanged_roles(point),
-        branch_parameter_error=distance * abs(line_axis.parameter_per_scaled_coordinate(point.row_parameter)),
+        branch_parameter_error=distance
+        * abs(line_axis.parameter_per_scaled_coordinate(point.row_parameter_value)),
         row_parameter_error_at_extremum=difference
-        + CURVE_SECANT_SETTINGS.min_relative_error * abs(point.branch_parameter),
+        + CURVE_SECANT_SETTINGS.min_relative_error * abs(point.branch_parameter_value),
     )

@@ -2,7 +2,7 @@
 
 All cycles and test functions are corrected with the matrix factors of one cycle (`augmented`). The first
 derivatives across the curve come from the previous point. The last step is linear; its error follows from the
-curvature of the test function, which is large near a generalised Hopf point.
+curvature of the test function, which is large near a generalised Hopf point. N is the number of orbit values.
 """
 
 import math
@@ -19,7 +19,7 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import mesh_of_orbit
 from ...unsolvable import Unsolvable
 from ..arc_length_step import tangent_at
-from ..bordered.condition import BorderCondition, moved_orbit
+from ..bordered.border_condition import BorderCondition, moved_orbit
 from ..bordered.scale import ArcLengthScale
 from .augmented.fold_and_torus_test_functions import MINIMALLY_AUGMENTED_SETTINGS
 from .augmented.nearby_cycles import NearbyCycleSolver
@@ -61,7 +61,7 @@ class SecantSearch:
         self.row_coordinate = row_coordinate
         self.line = line
         self.derivatives = derivatives
-        self.orbit = family.orbit_at_row(start, row_coordinate)
+        self.orbit = family.unsolved_orbit_at_row(start, row_coordinate)
         self.distance = 0.0
         self.previous: _SecantIterate | None = None
         # All cycles of this search measure arc length along the border, from the same origin.
@@ -119,8 +119,9 @@ class SecantSearch:
         return None
 
     def _distance_from_curve_after_step(self, step: float, span: float) -> float:
-        """Estimated distance from the curve after a last, linear step. span: distance between the two cycles
-        of the measured derivative; 0 if the derivative was not measured at this step."""
+        """Estimated distance from the curve after a last, linear step of the signed length `step`. span:
+        distance between the two cycles of the measured derivative; 0 if the derivative was not measured at
+        this step."""
         if step == 0:
             return 0.0  # even if the curvature is unknown
         if span:
@@ -131,7 +132,7 @@ class SecantSearch:
         slope_error = CURVE_SECANT_SETTINGS.relative_slope_error + self.curvature * slope_span / 2
         if self.has_previous_point_derivatives:
             # Along the curve a derivative changes more where the curvature is large.
-            slope_error = CURVE_SECANT_SETTINGS.previous_point_slope_error * max(1.0, self.curvature)
+            slope_error = CURVE_SECANT_SETTINGS.relative_error_of_previous_slope * max(1.0, self.curvature)
         # A wrong slope can at most make the whole step wrong.
         return min(slope_error, 1.0) * abs(step)
 
@@ -142,7 +143,7 @@ class SecantSearch:
             return True
         parameter = abs(getattr(self.orbit.form.rod, self.family.scale.parameter_name))
         settings = CURVE_SECANT_SETTINGS
-        max_error = settings.max_secant_error_per_accuracy * settings.accuracy * parameter
+        max_error = settings.max_secant_error_per_accuracy * settings.relative_parameter_accuracy * parameter
         is_near = error <= settings.max_distance_from_curve
         return is_near and self._parameter_error_at_distance(error) <= max_error
 
@@ -152,13 +153,17 @@ class SecantSearch:
         rates = self.derivatives
         length = self.start_arc_length + self.distance * float(self.line.direction[0])
         row = self.row_coordinate + self.distance * float(self.line.direction[1])
-        self.orbit = family.orbit_at_row(self.orbit, row)
+        self.orbit = family.unsolved_orbit_at_row(self.orbit, row)
         slope = abs(rates.test_function_slope) if rates else 1.0
         settings = MINIMALLY_AUGMENTED_SETTINGS
-        first_tolerance = settings.tolerance_to_distance_ratio * CURVE_SECANT_SETTINGS.first_secant_step
+        first_tolerance = (
+            settings.cycle_tolerance_over_curve_distance * CURVE_SECANT_SETTINGS.first_secant_step
+        )
         tolerance = settings.relative_cycle_tolerance if rates else first_tolerance
         condition = BorderCondition(family.scale, family.branch_direction, length)
-        self.orbit, test_value = self.nearby_solver.solve(self.orbit, condition, slope, tolerance)
+        self.orbit, test_value = self.nearby_solver.cycle_and_test_value(
+            self.orbit, condition, slope, tolerance
+        )
         vectors = self.nearby_solver.test_function.null_vectors
         return _SecantIterate(self.orbit, vectors, test_value, self.distance)
 
@@ -213,7 +218,7 @@ class SecantSearch:
         matrix = self.nearby_solver.matrix
         tangent = tangent_at(matrix.orbit, family.scale, family.branch_direction, matrix)
         row_coordinate = self.row_coordinate + (self.distance + step) * float(self.line.direction[1])
-        orbit = family.orbit_at_row(self._predicted_orbit(step, derivatives), row_coordinate)
+        orbit = family.unsolved_orbit_at_row(self._predicted_orbit(step, derivatives), row_coordinate)
         # The units follow the new orbit, but keep the lower limits that the family has.
         units = family.scale.min_deflection_unit, family.scale.min_coordinate_unit
         scale = ArcLengthScale.at_orbit(orbit, family.scale.parameter_name, *units)
@@ -223,9 +228,9 @@ class SecantSearch:
             scale=scale,
             branch_direction=derivative / np.linalg.norm(derivative),
             row_coordinate=row_coordinate,
-            branch_parameter=getattr(orbit.form.rod, scale.parameter_name),
-            row_parameter=getattr(orbit.form.rod, family.row_parameter_axis.name),
-            secant_error=self._parameter_error_at_distance(
+            branch_parameter_value=getattr(orbit.form.rod, scale.parameter_name),
+            row_parameter_value=getattr(orbit.form.rod, family.row_parameter_axis.parameter_name),
+            secant_parameter_error=self._parameter_error_at_distance(
                 distance_error + MINIMALLY_AUGMENTED_SETTINGS.relative_cycle_tolerance
             ),
             normal_derivatives=derivatives,
@@ -239,5 +244,5 @@ class SecantSearch:
         coordinate = self.orbit.form.rod.coordinate(self.family.scale.parameter_name)
         moved_coordinate = coordinate + distance * float(rates.orbit_derivative[-1])
         displacement = parameter.value(moved_coordinate) - parameter.value(coordinate)
-        # A displacement along the chord leads to another point of the curve, and is no error.
+        # A displacement along the chord leads to another point of the curve, and is not an error.
         return abs(displacement - distance * self.line.chord_slope * float(self.line.direction[1]))

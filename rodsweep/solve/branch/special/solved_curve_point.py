@@ -1,5 +1,5 @@
-"""A solved point of a curve of special points: cycle, error, and derivatives with respect to the distance
-from the curve."""
+"""A solved point of a curve of special points: its cycle, its error, and derivatives of nearby cycles with
+respect to their distance from the curve."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -21,7 +21,7 @@ from ..bordered.scale import ArcLengthScale
 class CurveSecantSettings(KernelConstants):
     """Settings for the secant method across a curve of special points, and for the errors of its points."""
 
-    accuracy: float = 1e-7
+    relative_parameter_accuracy: float = 1e-7
     """Relative accuracy of the parameter along a row at the points of a curve. Special points on rows are
     solved to 1e-9."""
     max_points_per_error_measurement: int = 3
@@ -36,17 +36,17 @@ class CurveSecantSettings(KernelConstants):
     max_secant_steps: int = 12
     """Maximum number of secant steps for one point."""
     max_distance_from_curve: float = 1e-8
-    """Largest distance, in arc length, of a point from the curve after the last step of the secant method,
-    which is linear."""
+    """Largest distance, in arc length, of a point from the curve after the last, linear step of the secant
+    method."""
     max_secant_error_per_accuracy: float = 0.1
     """Largest relative error of the parameter along a row that the distance of a point from the curve may
-    cause, divided by `accuracy`."""
+    cause, divided by `relative_parameter_accuracy`."""
     relative_slope_error: float = 1e-3
     """Relative error of derivatives that were computed at the same point on another mesh or at an earlier
     step of the same search, in addition to the effect of the curvature."""
-    previous_point_slope_error: float = 0.1
-    """Relative error of derivatives that were computed at the previous point of the curve; increased if the
-    curvature exceeds 1."""
+    relative_error_of_previous_slope: float = 0.1
+    """Assumed relative error of derivatives that were computed at the previous point of the curve; multiplied
+    by the curvature if the curvature exceeds 1."""
     curvature_growth_factor: float = 4.0
     """Assumed curvature of the test function at a point, divided by the curvature at the previous point."""
     min_cosine_for_derivative_reuse: float = 0.9
@@ -75,9 +75,8 @@ CURVE_SECANT_SETTINGS = CurveSecantSettings()
 class SearchLine(NamedTuple):
     """Line across a curve of special points, on which a point of the curve is searched.
 
-    direction: unit vector, (2,), in components (along the branch, row coordinate). chord_slope: `chord_slope`
-    of the curve, which gives the error of the parameter at a fixed row.
-    """
+    direction: unit vector, (2,), in components (along the branch, row coordinate). chord_slope: slope of the
+    curve, for the error of the parameter at a fixed row."""
 
     direction: Array
     chord_slope: float = 0.0
@@ -117,7 +116,7 @@ class NormalDerivatives:
 
 
 @dataclass(frozen=True, eq=False)
-class MeasuredCurveError:
+class CurveErrorCalibration:
     """Measured error of a point of a curve. At the next points the error is used again, scaled with the
     squared coefficient tails.
 
@@ -135,26 +134,27 @@ class MeasuredCurveError:
         measured relative error, increased by the squared growth of the tails, times the parameter."""
         # Errors are of second order in the tails.
         growth = float((smooth_space_and_time_tails(point.orbit) / self.coefficient_tails).max()) ** 2
-        return max(growth, 1.0) * self.relative_error * abs(point.branch_parameter)
+        return max(growth, 1.0) * self.relative_error * abs(point.branch_parameter_value)
 
     def applies_at(self, point: "SolvedCurvePoint") -> bool:
         """Whether the measured error may be used at the later point `point` of the curve: the measurement is
         recent, the mesh is the same, and the scaled error is within the accuracy."""
         max_reuses = CURVE_SECANT_SETTINGS.max_points_per_error_measurement - 1
         is_recent = self.reuse_count < max_reuses and mesh_of_orbit(point.orbit) == self.mesh
-        return is_recent and self.error_at(point) <= CURVE_SECANT_SETTINGS.accuracy * abs(
-            point.branch_parameter
+        return is_recent and self.error_at(point) <= CURVE_SECANT_SETTINGS.relative_parameter_accuracy * abs(
+            point.branch_parameter_value
         )
 
     @property
-    def for_next_point(self) -> "MeasuredCurveError":
+    def for_next_point(self) -> "CurveErrorCalibration":
         """The same measured error for the next point of the curve, with `reuse_count` increased by 1."""
         return replace(self, reuse_count=self.reuse_count + 1)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SolvedCurvePoint:
-    """A solved point of a curve of special points: cycle, and values of the two parameters of the plane."""
+    """A solved point of a curve of special points. In a point with exchanged roles (`ParameterRoles`), the
+    parameter along a row and the row parameter change places in the meaning of every field."""
 
     orbit: Orbit
     """The cycle at this point of the curve."""
@@ -165,18 +165,18 @@ class SolvedCurvePoint:
     parameter)."""
     row_coordinate: float
     """Position on the axis of the row parameter, from 0 to 1."""
-    branch_parameter: float
+    branch_parameter_value: float
     """Value of the parameter along a row."""
-    row_parameter: float
+    row_parameter_value: float
     """Value of the row parameter."""
     branch_parameter_error: float = nan
-    """Absolute error of `branch_parameter`; NaN before `points_with_parameter_errors` sets it."""
+    """Absolute error of `branch_parameter_value`; NaN before `points_with_parameter_errors` sets it."""
     row_parameter_error_at_extremum: float = 0.0
-    """Absolute error of `row_parameter` where it is extremal along the curve; 0 at other points."""
-    measured_error: MeasuredCurveError | None = None
+    """Absolute error of `row_parameter_value` where it is extremal along the curve; 0 at other points."""
+    measured_error: CurveErrorCalibration | None = None
     """Error measured at this point or at an earlier point of the curve; None if unknown."""
-    secant_error: float = 0.0
-    """Absolute error of `branch_parameter` at fixed row parameter, by the tolerance of the secant method."""
+    secant_parameter_error: float = 0.0
+    """Absolute error of `branch_parameter_value` on a fixed row, by the tolerance of the secant method."""
     normal_derivatives: NormalDerivatives | None = None
     """Derivatives across the curve; None if unknown."""
 
@@ -224,8 +224,8 @@ def points_with_parameter_errors(points: Sequence[SolvedCurvePoint]) -> list[Sol
         elif measured_point is not None and point.has_mesh_and_roles_of(measured_point):
             assert measured_point.measured_error is not None
             candidates.append(measured_point.measured_error)
-        mesh_error = max(errors.error_at(point) for errors in candidates)
-        points_with_errors.append(replace(point, branch_parameter_error=mesh_error + point.secant_error))
+        error = max(errors.error_at(point) for errors in candidates) + point.secant_parameter_error
+        points_with_errors.append(replace(point, branch_parameter_error=error))
     return points_with_errors[::-1]
 
 
@@ -233,15 +233,15 @@ def arc_lengths_from_last_point(points: Sequence[SolvedCurvePoint]) -> Array:
     """Arc lengths, (points,), of the points of a curve: 0 at the last point, negative at earlier points."""
     steps = [float(np.linalg.norm(b.step_from(a))) for a, b in zip(points[:-1], points[1:], strict=True)]
     # Zero at the last point, so that predictions have positive lengths.
-    lengths: Array = np.cumsum([0.0, *steps]) - sum(steps)
-    return lengths
+    return np.asarray(np.cumsum([0.0, *steps]) - sum(steps), float)
 
 
 def chord_slope(first: SolvedCurvePoint, second: SolvedCurvePoint) -> float:
-    """Slope of the chord between two points of a curve: difference of `branch_parameter`, divided by the
+    """Slope of the chord from `first` to `second`: difference of `branch_parameter_value`, divided by the
     difference of `row_coordinate`; 0 if the row coordinates are equal."""
+    difference = second.branch_parameter_value - first.branch_parameter_value
     row_difference = second.row_coordinate - first.row_coordinate
-    return (second.branch_parameter - first.branch_parameter) / row_difference if row_difference else 0.0
+    return difference / row_difference if row_difference else 0.0
 
 
 def search_line_across_curve(step: Array, first: SolvedCurvePoint, second: SolvedCurvePoint) -> SearchLine:

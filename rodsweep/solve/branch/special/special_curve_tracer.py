@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from ....determinant.parameter_plane import PlaneAxis
-from ...continuation.curve_search import CurveTracingState, TracedCurves, trace_all_curves
+from ...continuation.curves_through_seeds import CurveTracingState, TracedCurves, trace_all_curves
 from ...orbit.matrix.workspace import NewtonWorkspace
-from .curve_ends import SPECIAL_CURVE_END_SETTINGS, are_identical_curves, leaves_range_of_rows
+from .curve_ends import SPECIAL_CURVE_END_SETTINGS, are_identical_curves, leaves_range_along_rows
 from .curve_problem import SpecialCurveProblem
 from .half_curve import trace_half_curve
 from .row_crossing import RowCrossing
@@ -42,7 +42,7 @@ class SpecialCurveTracer:
     row_parameter_axis: PlaneAxis
     special_points: Sequence[RowSpecialPoint]
     values_of_rows_with_known_branches: Mapping[int, float] = field(default_factory=dict)
-    """Value of the row parameter, by index, of the rows whose branches are all known."""
+    """Value of the row parameter by index of the row, for rows whose branches are all known."""
     special_points_not_to_trace: Sequence[RowSpecialPoint] = ()
     """Further special points of the rows, through which no curve is traced."""
     branch_starts_by_row: Mapping[int, tuple[SpecialPoint, ...]] = field(default_factory=dict)
@@ -59,15 +59,15 @@ class SpecialCurveTracer:
         """Numbers of the half curves needed now, then of half curves that may be needed later; empty if all
         curves are complete. results: results of half curves, by number."""
         needed_items: list[int] = []
-        possible_items: list[int] = []
+        possible_later_items: list[int] = []
         for curves, search in self._tracing_states_by_kind(results):
             needed_items += search.missing_items
-            possible_items += curves.possible_items(search)
+            possible_later_items += curves.possible_later_items(search)
         # Possible items keep ranks busy that would wait; they are never worth a stage of their own.
-        items = needed_items + possible_items if needed_items else []
+        items = needed_items + possible_later_items if needed_items else []
         return [self.first_item_number + item for item in items]
 
-    def row_crossings(self, results: Mapping[int, HalfCurveArrays]) -> list[RowCrossing]:
+    def unexplained_crossings(self, results: Mapping[int, HalfCurveArrays]) -> list[RowCrossing]:
         """Crossings of all curves with complete rows at which no special point lies; valid if
         `items_to_solve(results)` is empty."""
         return [
@@ -87,7 +87,7 @@ class SpecialCurveTracer:
             self.special_points[min(traced.distances_along_row)]
             for _, search in self._tracing_states_by_kind(results)
             for traced in search.curves
-            if traced.distances_along_row and leaves_range_of_rows(traced.curve, self.axis_along_row)
+            if traced.distances_along_row and leaves_range_along_rows(traced.curve, self.axis_along_row)
         ]
 
     def curves(self, results: Mapping[int, HalfCurveArrays]) -> TracedCurves[SpecialPointCurve]:
@@ -138,7 +138,7 @@ class SpecialCurveTracer:
         """Text for half curve `item` in the progress display: kind of curve, starting row, direction."""
         index, is_backward = divmod(item - self.first_item_number, 2)
         point = self.special_points[index]
-        start = f"{self.row_parameter_axis.name} = {point.row_parameter_value:.5g}"
+        start = f"{self.row_parameter_axis.parameter_name} = {point.row_parameter_value:.5g}"
         direction = "smaller" if is_backward else "larger"
         return f"curve of {FOLLOWED_KIND_NOUNS[point.kind]} from {start} to {direction} values"
 
@@ -180,7 +180,7 @@ class _CurvesOfKind:
         needs_backward = half is not None and half.end_reason is not CurveEndReason.closed
         return [backward_item] if needs_backward and backward_item not in self.results else []
 
-    def possible_items(self, search: "CurveTracingState[_TracedCurve]") -> list[int]:
+    def possible_later_items(self, search: "CurveTracingState[_TracedCurve]") -> list[int]:
         """Numbers of half curves that may be needed later: from special points on no curve yet, on the rows
         where the half curves needed now start."""
         rows = {self.tracer.special_points[item // 2].row_parameter_value for item in search.missing_items}

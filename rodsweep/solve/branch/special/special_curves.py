@@ -39,7 +39,7 @@ class CurveIdentitySettings:
     """Between the last cycle of a curve and the Hopf point where the cycles vanish, a special point lies on
     the curve if its distance, along the row, from the chord is at most this fraction of the length of a
     row."""
-    max_interpolated_points: int = 4
+    max_extrapolation_points: int = 4
     """Maximum number of points of the interpolating polynomial that predicts the next point, or the Hopf
     point where the cycles vanish."""
     extrapolation_safety_factor: float = 10.0
@@ -86,7 +86,7 @@ class HopfEnd:
 
     parameter_value: float
     row_parameter_value: float
-    error: float
+    error: float  # named as its variable in files, without the prefix
     period: float
     tip_y_max: float = 0.0
 
@@ -105,7 +105,7 @@ class CurvePoint:
     parameter_value: float
     row_parameter_value: float
     row_coordinate: float
-    error: float
+    error: float  # named as its variable in files, without the prefix
     period: float
     tip_y_max: float
     row_parameter_error_at_extremum: float = 0.0
@@ -114,8 +114,8 @@ class CurvePoint:
     def from_solved_point(cls, point: SolvedCurvePoint) -> "CurvePoint":
         """The stored quantities of a solved point of a curve."""
         return cls(
-            parameter_value=point.branch_parameter,
-            row_parameter_value=point.row_parameter,
+            parameter_value=point.branch_parameter_value,
+            row_parameter_value=point.row_parameter_value,
             row_coordinate=point.row_coordinate,
             error=point.branch_parameter_error,
             period=point.orbit.period,
@@ -198,9 +198,9 @@ class SpecialPointCurve:
 def with_bautin_ends(
     curve: SpecialPointCurve, plane: ParameterPlane, known_points: Sequence[BautinPoint]
 ) -> SpecialPointCurve:
-    """The curve of folds with each extrapolated end replaced by the identical generalised Hopf point in
-    `known_points`, which is more accurate than the extrapolation. A curve of torus points, and an end without
-    an identical point, are unchanged."""
+    """The curve `curve` of folds, in which each extrapolated end is replaced by the identical generalised
+    Hopf point in `known_points`, which is more accurate than the extrapolation. A curve of torus points, and
+    an end without an identical point, are unchanged."""
     max_distance = CURVE_IDENTITY_SETTINGS.max_hopf_to_generalised_hopf_distance
 
     def at_generalised_hopf(end: HopfEnd | None) -> HopfEnd | None:
@@ -233,7 +233,7 @@ def lagrange_weights(abscissas: Array, abscissa: float) -> Array:
 def extrapolated_hopf_end(points: Sequence[CurvePoint]) -> HopfEnd | None:
     """The Hopf point where the cycles vanish beyond the last of `points`, extrapolated by polynomials in the
     squared amplitude; None if there is only one point."""
-    last_points = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
+    last_points = points[-CURVE_IDENTITY_SETTINGS.max_extrapolation_points :]
     if len(last_points) == 1:
         return None
     # Parameters and period are even in the amplitude, so polynomials in its square converge.
@@ -244,6 +244,7 @@ def extrapolated_hopf_end(points: Sequence[CurvePoint]) -> HopfEnd | None:
         np.dot(lagrange_weights(squared_amplitudes[i:], 0.0), quantities[i:]) for i in (0, 1)
     )
     # Both polynomials share the errors of the points, which their difference would not show.
-    difference = abs(values[0] - values_of_lower_order[0]) + max(point.error for point in last_points)
+    difference = abs(values[0] - values_of_lower_order[0])
+    difference += max(point.error for point in last_points)
     error = CURVE_IDENTITY_SETTINGS.extrapolation_safety_factor * difference
     return HopfEnd(float(values[0]), float(values[1]), float(error), float(values[2]))

@@ -22,15 +22,15 @@ class SpecialPointSettings:
     relative_cycle_tolerance: float = 1e-12
     """Relative tolerance of the cycles solved during the search, about the smallest error that corrections
     with one matrix reach."""
-    test_function_change_tolerance: float = 1e-10
+    test_function_correction_tolerance: float = 1e-10
     """The correction of a test function stops when its value changes by at most this number. A correction
     gains two digits, and at a fold the error of the parameter is of second order in the test function.
     Rounding errors of the test function, which differ between meshes, are of this size: up to 2e-10."""
     tip_y_of_doubled_fold_error: float = 0.02
     """Largest tip y, in L, at which the error of the test function of a fold is twice
-    `test_function_change_tolerance`; at smaller amplitudes it grows in inverse proportion, because the whole
-    state has the relative tolerance of the cycles. Without this growth folds at a relative distance of 2e-6
-    from a generalised Hopf point had errors of 8 times their estimates."""
+    `test_function_correction_tolerance`; at smaller amplitudes it grows in inverse proportion, because the
+    whole state has the relative tolerance of the cycles. Without this growth folds at a relative distance of
+    2e-6 from a generalised Hopf point had errors of 8 times their estimates."""
     test_function_rounding_error: float = 1e-11
     """Error of the multiplier at a symmetry breaking or period doubling, and of h1 where the model ends: ten
     times the relative tolerance of the cycles."""
@@ -89,17 +89,19 @@ class SpecialPointSettings:
     the error that is assumed to be left."""
     relative_rounding_error: float = 1e-13
     """Relative rounding error of the parameter, the period and the largest tip y of a special point."""
-    max_distance_from_multiplier_one: float = 3e-3
+    max_undecided_multiplier_minus_one: float = 3e-3
     """A multiplier m with |m - 1| below this number may lie on either side of the unit circle, because of
     errors. Near a fold two multipliers are close to 1."""
     max_prediction_error_without_fold: float = 1e-4
-    """If the parameter turns back between two successive cycles, and their multipliers do not show a fold
-    within their errors, the cycles are taken as cycles of one branch only if the prediction error of the
-    second cycle is at most this number: a fifth of the usual error, so that one halving of the step suffices.
-    Between small cycles of two Hopf points close together, errors of 8e-3 were seen."""
+    """If a multiplier of two successive cycles is 1 within its error, and the parameter turns back between
+    the cycles or the number of real multipliers above 1 changes by an odd number, they are taken as cycles of
+    one branch only if the prediction error of the second cycle is at most this number: a fifth of the usual
+    error, so that one halving of the step suffices. Between small cycles of two Hopf points close together,
+    errors of 8e-3 were seen."""
     max_parameter_change_if_located_twice: float = 1e-6
     """Two special points of a rod are the same point only if the relative difference of their parameters,
-    less their errors, is at most this number; a point on a curve over two parameters has an error of 1e-7."""
+    minus the sum of their errors, is at most this number; a point on a curve over two parameters has an error
+    of 1e-7."""
     max_period_change_if_located_twice: float = 1e-4
     """Largest relative difference between the periods of the same special point located twice."""
     max_step_halvings: int = 7
@@ -112,7 +114,7 @@ SPECIAL_POINT_SETTINGS = SpecialPointSettings()
 
 class SpecialPointKind(IntEnum):
     """Kind of a special point of a branch; the result file stores the value. left_the_model: h1 = 0 at a
-    position on the rod. end: end of the branch."""
+    position on the rod, where the cross-section is crushed. end: end of the branch."""
 
     hopf = 1
     fold = 2
@@ -148,8 +150,8 @@ class SpecialPoint:
     orbit: Orbit | None = field(default=None, repr=False, compare=False)
     """The cycle at a located special point; None if the point was not located."""
     amplitude_coefficient: float = nan
-    """At a Hopf point the coefficient a of the branch, in L: the tip reaches y = a sqrt(|p/p_H - 1|) at
-    parameter values p near the Hopf point p_H; NaN at other points."""
+    """At a Hopf point the coefficient a of the branch, in L: the tip reaches y = |a| sqrt(|p/p_H - 1|) at
+    parameter values p near the Hopf point p_H; a < 0 if the cycles exist at p < p_H; NaN at other points."""
     relative_amplitude_coefficient_error: float = nan
     """Relative error of `amplitude_coefficient`."""
 
@@ -185,8 +187,8 @@ class RowSpecialPoint:
 def _agree_within_error(
     first: SpecialPoint | RowSpecialPoint, second: SpecialPoint | RowSpecialPoint, error: float
 ) -> bool:
-    """Whether kind, parameter and period of two special points agree. error: sum of the absolute errors of
-    the two parameters."""
+    """Whether kind, parameter and period of the special points `first` and `second` agree. error: sum of the
+    absolute errors of the two parameters."""
     # The largest y differs between mirror images, so it is not compared.
     excess_distance = abs(first.parameter_value - second.parameter_value) - error
     return (

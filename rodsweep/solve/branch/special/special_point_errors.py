@@ -14,7 +14,7 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of_orbit
 from ...orbit.tip_path_differences import PERIOD_INDEX
 from ..arc_length_step import BranchCycle
-from ..branch_error_measurement import motion_along_tangent
+from ..branch_error_measurement import motion_displaced_along_tangent
 from ..branch_errors import BranchErrorCalibration
 from ..settings import BRANCH_ERROR_SETTINGS
 from .branch_segment import BranchSegment
@@ -23,8 +23,8 @@ from .special_point import SPECIAL_POINT_SETTINGS, SpecialPoint, SpecialPointKin
 
 class TestFunctionZero(NamedTuple):
     """Zero of a test function on a mesh, by the secant method. arc_length: arc length of the zero on its
-    segment. orbit: cycle at the zero. test_function_slope: slope of the test function. last_secant_step:
-    length of the last secant step, over which the cycle is moved along its tangent."""
+    segment. orbit: cycle at the zero. test_function_slope: slope of the test function. last_secant_step: last
+    secant step, signed, over which the cycle is moved along its tangent."""
 
     arc_length: float
     orbit: Orbit
@@ -44,9 +44,9 @@ def special_point_at(kind: SpecialPointKind, zero: TestFunctionZero, parameter_n
     )
 
 
-def parameter_difference(point: SpecialPoint, coarser_point: SpecialPoint) -> float:
-    """Difference between the parameters of a special point on two meshes, with a safety factor and the
-    rounding error."""
+def parameter_error_from_meshes(point: SpecialPoint, coarser_point: SpecialPoint) -> float:
+    """Difference between the parameters of a special point on a mesh, `point`, and on a coarser mesh,
+    `coarser_point`, with a safety factor and the rounding error."""
     difference = abs(point.parameter_value - coarser_point.parameter_value)
     rounding_error = SPECIAL_POINT_SETTINGS.relative_rounding_error * abs(point.parameter_value)
     return SPECIAL_POINT_SETTINGS.error_safety_factor * difference + rounding_error
@@ -59,11 +59,11 @@ def with_mesh_errors(
     segment: BranchSegment,
     accuracy: float,
 ) -> SpecialPoint:
-    """The special point with errors: the error of the mesh, from the differences from `coarser_point`, the
-    same point on a coarser mesh; except for the parameter at a fold, also the error of the zero on this mesh.
-    zeros: zeros on both meshes, the coarser first. accuracy: relative accuracy of the parameter. Only if both
-    meshes agree within it, the errors are assumed to decrease as `_remaining_error_per_mesh_difference`
-    says."""
+    """The special point with errors. Errors of the mesh follow from the differences from `coarser_point`, the
+    same point on a coarser mesh. The error of the zero on the mesh is added, except for the parameter at a
+    fold. zeros: zeros on both meshes, the coarser first. accuracy: relative accuracy of the parameter. Only
+    if both meshes agree within this accuracy, errors are assumed to decrease by the ratio of
+    `_remaining_error_per_mesh_difference`."""
     coarser_zero, zero = zeros
     values, coarser_values = (
         np.array([each.parameter_value, each.period, each.tip_y_max]) for each in (point, coarser_point)
@@ -74,7 +74,7 @@ def with_mesh_errors(
     )
     if point.kind is SpecialPointKind.fold:
         rates[0] = 0.0
-    # Numbers of two meshes may agree by coincidence, although the cycles at the special point differ.
+    # Numbers on two meshes may agree by coincidence, although the cycles at the special point differ.
     differences = np.max(
         [
             np.abs(values - coarser_values),
@@ -83,9 +83,9 @@ def with_mesh_errors(
         ],
         axis=0,
     )
-    is_accurate = parameter_difference(point, coarser_point) <= accuracy * abs(point.parameter_value)
+    is_accurate = parameter_error_from_meshes(point, coarser_point) <= accuracy * abs(point.parameter_value)
     factor = _remaining_error_per_mesh_difference(coarser_zero, zero, segment) if is_accurate else 1.0
-    # The slope of a secant between two nearby cycles may be rounding error; on two meshes it hardly is.
+    # The slope of a secant between two nearby cycles may be rounding error; on two meshes this is unlikely.
     slope = min(abs(zero.test_function_slope), abs(coarser_zero.test_function_slope))
     zero_error = (
         SPECIAL_POINT_SETTINGS.relative_slope_error * abs(zero.last_secant_step)
@@ -106,17 +106,19 @@ def _test_function_error(point: SpecialPoint) -> float:
     settings = SPECIAL_POINT_SETTINGS
     if point.kind is SpecialPointKind.fold:
         growth = settings.tip_y_of_doubled_fold_error / point.tip_y_max
-        return settings.test_function_change_tolerance * (1 + growth)
+        return settings.test_function_correction_tolerance * (1 + growth)
     # Of the others, only the test function of torus points is corrected by iteration.
     is_corrected = point.kind is SpecialPointKind.torus
-    return settings.test_function_change_tolerance if is_corrected else settings.test_function_rounding_error
+    return (
+        settings.test_function_correction_tolerance if is_corrected else settings.test_function_rounding_error
+    )
 
 
 def _parameter_period_and_tip_y_ahead(zero: TestFunctionZero, segment: BranchSegment) -> Array:
     """Parameter, period and largest tip y, (3,), of a cycle beside the zero that was found last on `segment`,
     at the distance `sensitivity_arc_length` along its tangent."""
     name = segment.start.scale.parameter_name
-    motion = motion_along_tangent(zero.orbit, name, segment.last_solved_cycle[2])
+    motion = motion_displaced_along_tangent(zero.orbit, name, segment.last_arc_length_cycle_and_tangent[2])
     value = getattr(motion.orbit.form.rod, name)
     return np.array([value, motion.orbit.period, motion.tip_extrema["tip_y_max"]])
 
@@ -124,8 +126,9 @@ def _parameter_period_and_tip_y_ahead(zero: TestFunctionZero, segment: BranchSeg
 def _remaining_error_per_mesh_difference(
     coarser_zero: TestFunctionZero, zero: TestFunctionZero, segment: BranchSegment
 ) -> float:
-    """Assumed error on the finer mesh, divided by the difference between both meshes: q/(1 - q), q: ratio of
-    the errors on the two meshes, in space or in time, whichever is larger."""
+    """Assumed error on the mesh of `zero`, divided by the difference between this mesh and the mesh of
+    `coarser_zero`: q/(1 - q), q: ratio of the errors on the finer and on the coarser mesh, in space or in
+    time, whichever is larger."""
     coarser_mesh, mesh = mesh_of_orbit(coarser_zero.orbit), mesh_of_orbit(zero.orbit)
     measured_decay = float(
         segment.end.calibration.errors_at_equal_parameter.log_space_error_decay_per_order[PERIOD_INDEX]
@@ -179,11 +182,11 @@ def first_mesh_for_special_point(calibration: BranchErrorCalibration, accuracy: 
     and 2.3 GB of factors.
     """
     target_accuracy = SPECIAL_POINT_SETTINGS.first_mesh_accuracy_ratio * accuracy
-    mesh = calibration.cheapest_mesh_for_parameter(target_accuracy)
+    mesh = calibration.cheapest_mesh_at_equal_deflection(target_accuracy)
     stage_count = max(mesh.stage_count, cheapest_stage_count(accuracy))
     if stage_count == mesh.stage_count:
         return mesh
-    coarser_mesh = calibration.cheapest_mesh_for_parameter(
+    coarser_mesh = calibration.cheapest_mesh_at_equal_deflection(
         # The calibration knows only the stages of the branch; on k times the stages the same mesh has the
         # error to the power k.
         target_accuracy ** (mesh.stage_count / stage_count)

@@ -20,7 +20,7 @@ from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...unsolvable import Unsolvable
 from ..arc_length_step import BranchCycle, branch_derivatives, tangent_at
-from ..bordered.condition import BorderCondition, moved_orbit
+from ..bordered.border_condition import BorderCondition, moved_orbit
 from ..bordered.corrected_linearisation import linearisation_of
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale, deflection_at_time_zero
@@ -49,7 +49,7 @@ class AsymmetricStartSettings:
     """Largest relative accuracy of the cycles of a branch with a fold before the first cycle. On a coarser
     mesh the fold may be missing: at an accuracy of 1e-5, a fold at a relative distance of 7e-7 from the
     symmetry breaking was missing."""
-    asymmetry_per_asymmetry_at_fold: float = 0.5
+    first_over_fold_asymmetry: float = 0.5
     """If the branch has a fold before the first cycle, the asymmetry of the first cycle is reduced to this
     fraction of the asymmetry at the fold."""
 
@@ -64,10 +64,11 @@ def first_asymmetric_cycle(
     workspace: NewtonWorkspace,
     min_coordinate_unit: float = 0.0,
 ) -> tuple[BranchCycle, float]:
-    """Returns (the first asymmetric cycle of the branch from a symmetry breaking along the parameter `name`,
-    its relative accuracy): `accuracy`, or a smaller number if a fold lies close to the symmetry breaking.
-    Raises Unsolvable. Of a cycle and its mirror image, the cycle with the larger maximum of the tip's y is
-    returned. min_coordinate_unit: smallest unit of the parameter coordinate."""
+    """Returns (cycle, relative accuracy): the first asymmetric cycle of the branch from the symmetry breaking
+    `breaking` along the parameter `name`, and its relative accuracy, which is `accuracy`, or a smaller number
+    if a fold lies close to the symmetry breaking. Raises Unsolvable. Of a cycle and its mirror image, the
+    cycle with the larger maximum of the tip's y is returned. min_coordinate_unit: smallest unit of the
+    parameter coordinate."""
     if breaking.special_point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
     full_orbit = extended_to_whole_period(breaking.special_point.orbit)
@@ -97,8 +98,9 @@ def first_asymmetric_cycle(
     raise Unsolvable(f"no cycle is solved near the symmetry breaking: {reason}") from reason
 
 
-def _require_asymmetry(orbit: Orbit, predicted: Orbit) -> None:
-    """Raises Unsolvable if the asymmetry of an orbit is far from the asymmetry of its prediction."""
+def _require_predicted_asymmetry(orbit: Orbit, predicted: Orbit) -> None:
+    """Raises Unsolvable if the asymmetry of `orbit` is far from the asymmetry of its prediction
+    `predicted`."""
     expected_asymmetry = bending_moment_asymmetry(predicted)
     # Asymmetries are compared node by node, so both must have one mesh in space.
     orbit_on_mesh = orbit.on_mesh(predicted.form.mesh, orbit.interval_count, orbit.stage_count)
@@ -144,7 +146,7 @@ class _AsymmetricCycles:
         # The parameter still moves as it started, so no fold lies between.
         if A * parameter_rate >= 0:
             return distance
-        return distance * ASYMMETRIC_START_SETTINGS.asymmetry_per_asymmetry_at_fold * sqrt(-A / (2 * B))
+        return distance * ASYMMETRIC_START_SETTINGS.first_over_fold_asymmetry * sqrt(-A / (2 * B))
 
     def _parameter_per_arc_length(self, distance: float) -> float:
         """Derivative of the scaled parameter coordinate with respect to arc length at the cycle at a relative
@@ -166,7 +168,7 @@ class _AsymmetricCycles:
             start, REFINEMENT_SETTINGS.nearby_orbit_newton_tolerance, self.matrix.workspace
         )
         near_orbit = solved.orbit
-        _require_asymmetry(near_orbit, start)
+        _require_predicted_asymmetry(near_orbit, start)
         mesh_accuracy = max(self.accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
         mesh = mesh_from_coefficient_tails(near_orbit, mesh_accuracy, cheapest_stage_count(self.accuracy))
         first = condition.solve_on_mesh(
@@ -181,7 +183,7 @@ class _AsymmetricCycles:
             first, scale, self._border(distance), arc_from_start, self.accuracy
         )
         # Again, because the correction on the final mesh may still fall onto the symmetric cycle.
-        _require_asymmetry(cycle.orbit, start)
+        _require_predicted_asymmetry(cycle.orbit, start)
         return cycle
 
     def _predicted_deflection_change(self, distance: float) -> float:

@@ -18,7 +18,7 @@ from ...orbit.mesh_choice import cheapest_stage_count, mesh_from_coefficient_tai
 from ...orbit.orbit import Orbit
 from ...unsolvable import Unsolvable
 from ..arc_length_step import BranchCycle
-from ..bordered.condition import BorderCondition
+from ..bordered.border_condition import BorderCondition
 from ..bordered.scale import ArcLengthScale, deflection_at_time_zero
 from ..branch_errors import branch_newton_tolerance
 from ..branch_mesh_choice import first_cycle_with_measured_errors
@@ -60,8 +60,8 @@ def first_cycle(
 def _cycle_near_hopf_point(
     hopf: HopfBranchStart, max_amplitude: float, accuracy: float, workspace: NewtonWorkspace
 ) -> BranchCycle:
-    """A cycle of the branch from the Hopf point `hopf`, as its first cycle, to a relative accuracy; raises
-    Unsolvable. max_amplitude: upper limit of its amplitude, in L."""
+    """A first cycle for the branch from the Hopf point `hopf`, solved to a relative accuracy; raises
+    Unsolvable. max_amplitude: upper limit of the largest tip y of the predicted cycle, in L."""
     a = abs(hopf.amplitude_coefficient)
     first_mesh_accuracy = max(accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
     # On a coarse mesh the Hopf point is displaced, so that this mesh may have no cycle here.

@@ -28,7 +28,7 @@ class HopfBranchStart:
     parameter_name: str
     parameter_coordinate: float
     """Coordinate of the parameter at the Hopf point: 1/k for a stiffness k, otherwise the value itself."""
-    eigenvalue_slope: complex
+    eigenvalue_slope_by_coordinate: complex
     """Derivative dw/d(coordinate) of the critical eigenvalue w at the Hopf point; w in 1/tau2."""
     normal_form: NormalForm
     """Normal form on a mesh that suffices for the prediction of the first cycle."""
@@ -58,7 +58,7 @@ class HopfBranchStart:
         # means cycles at smaller p.
         squared_amplitude = (
             -sign
-            * self.eigenvalue_slope.real
+            * self.eigenvalue_slope_by_coordinate.real
             * self.parameter_coordinate
             / self.normal_form_coefficients.landau.real
         )
@@ -66,10 +66,11 @@ class HopfBranchStart:
 
     @property
     def relative_amplitude_coefficient_error(self) -> float:
-        """Relative error of the amplitude coefficient: half the sum of the relative errors of Re c, of
-        Re(slope) and of the parameter at the Hopf point."""
+        """Relative error of the amplitude coefficient: half the sum of the relative errors of Re c (c: Landau
+        coefficient), of the real part of `eigenvalue_slope_by_coordinate`, and of the parameter at the Hopf
+        point."""
         c = self.normal_form_coefficients.landau
-        slope = self.eigenvalue_slope
+        slope = self.eigenvalue_slope_by_coordinate
         landau_error = self.normal_form_coefficients.landau_error * abs(c) / abs(c.real)
         slope_error = self.normal_form_coefficients.growth_slope_error * abs(slope) / abs(slope.real)
         # Half, because a is a square root.
@@ -81,27 +82,32 @@ class HopfBranchStart:
         error at the Hopf point, plus the rounding error."""
         parameter_error = self.crossing.error / abs(self.crossing.value) * abs(self.parameter_coordinate)
         return (
-            abs(self.eigenvalue_slope) * parameter_error / self.crossing.frequency
+            abs(self.eigenvalue_slope_by_coordinate) * parameter_error / self.crossing.frequency
             + BRANCH_START_SETTINGS.relative_frequency_rounding_error
         )
 
     @property
     def parameter_direction(self) -> int:
         """Sign of the change of the parameter coordinate along the branch at the Hopf point; 0 if the error
-        of Re c exceeds |Re c|."""
+        of Re c exceeds |Re c| (c: Landau coefficient)."""
         c = self.normal_form_coefficients.landau
         # Negated, so that a nan coefficient gives no direction.
         if not abs(c.real) > self.normal_form_coefficients.landau_error * abs(c):
             return 0
-        return int(np.sign(-c.real / self.eigenvalue_slope.real))
+        return int(np.sign(-c.real / self.eigenvalue_slope_by_coordinate.real))
 
     def parameter_change_and_frequency(self, amplitude: float) -> tuple[float, float]:
         """Returns (change of the parameter coordinate from the Hopf point, frequency in 1/tau2), by the
         normal form, of the cycle whose largest tip y is `amplitude`, in L."""
         c = self.normal_form.landau
         # The growth rate of the cycle vanishes: Re slope dp + Re c a^2 = 0.
-        change = -c.real * amplitude**2 / self.eigenvalue_slope.real
-        return change, self.crossing.frequency + self.eigenvalue_slope.imag * change + c.imag * amplitude**2
+        change = -c.real * amplitude**2 / self.eigenvalue_slope_by_coordinate.real
+        return (
+            change,
+            self.crossing.frequency
+            + self.eigenvalue_slope_by_coordinate.imag * change
+            + c.imag * amplitude**2,
+        )
 
     def period_and_amplitude_at(self, coordinate: float) -> tuple[float, float]:
         """(period in tau2, largest tip y in L), by the normal form, of the cycle at the parameter coordinate
@@ -109,8 +115,10 @@ class HopfBranchStart:
         c = self.normal_form_coefficients.landau
         change = coordinate - self.parameter_coordinate
         # A negative square means that no cycle exists on this side.
-        squared = max(-self.eigenvalue_slope.real * change / c.real, 0.0)
-        frequency = self.crossing.frequency + self.eigenvalue_slope.imag * change + c.imag * squared
+        squared = max(-self.eigenvalue_slope_by_coordinate.real * change / c.real, 0.0)
+        frequency = (
+            self.crossing.frequency + self.eigenvalue_slope_by_coordinate.imag * change + c.imag * squared
+        )
         return 2 * np.pi / frequency, squared**0.5
 
 
@@ -132,9 +140,9 @@ def hopf_branch_start(
     return HopfBranchStart(
         crossing=crossing,
         rod=rod,
-        parameter_name=path.name,
+        parameter_name=path.parameter_name,
         parameter_coordinate=path.coordinate(crossing.value),
-        eigenvalue_slope=complex(slope),
+        eigenvalue_slope_by_coordinate=complex(slope),
         normal_form=normal,
         # Two meshes give these coefficients with their errors; one mesh suffices for the start of the branch.
         normal_form_coefficients=_accurate_coefficients(rod, crossing),
@@ -164,7 +172,7 @@ def accuracy_near_hopf_points(hopfs: Sequence[HopfBranchStart], accuracy: float)
         return accuracy
     ratio = (BRANCH_START_SETTINGS.max_nondegenerate_amplitude_coefficient / max_coefficient) ** 2
     required_accuracy = BRANCH_START_SETTINGS.max_accuracy_if_degenerate * ratio
-    return min(accuracy, max(required_accuracy, BRANCH_START_SETTINGS.min_accuracy_if_degenerate))
+    return min(accuracy, max(required_accuracy, BRANCH_START_SETTINGS.finest_accuracy_if_degenerate))
 
 
 def hopf_as_special_point(hopf: HopfBranchStart) -> SpecialPoint:

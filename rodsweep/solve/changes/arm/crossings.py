@@ -24,12 +24,12 @@ class ArmCrossingSettings:
     max_growing_pairs_per_max_crossings: float = 2.0
     """Largest number of pairs expected to grow at the right end of an interval, divided by the maximum number
     of crossings; with more pairs the interval is halved before its search."""
-    min_halved_interval_fraction: float = 1e-3
+    min_halved_interval_over_path: float = 1e-3
     """Intervals shorter than this fraction of the path are searched without being halved."""
     max_pairs_searched_at_once: int = 6
     """Where many modes grow, all crossings between two counted arms are searched at once if their counts
     differ by at most this many pairs."""
-    max_frequency_per_largest_modulus: float = 4.0
+    searched_frequency_over_largest_w: float = 4.0
     """Modes near the axis at a crossing are searched for |Im w| up to this multiple of the largest |w|."""
     max_same_crossing_distance_in_errors: float = 10.0
     """Two crossings may be equal if their values differ by at most this multiple of their summed errors."""
@@ -37,7 +37,7 @@ class ArmCrossingSettings:
     """Two crossings that may be equal by `max_same_crossing_distance_in_errors` are equal if the relative
     difference of their frequencies is at most this number."""
     min_interval_fraction: float = 1e-6
-    """Intervals shorter than this fraction of the path are not divided, but stored as gaps."""
+    """Between equal counts, intervals shorter than this fraction of the path are stored as gaps."""
     min_relative_interval_length: float = 1e-12
     """The search fails at an interval without located crossings whose length, divided by the larger modulus
     of its ends, is at most this number: some thousand rounding errors."""
@@ -46,11 +46,11 @@ class ArmCrossingSettings:
     max_newton_steps: int = 20
     """Maximum number of Newton steps for one crossing."""
     converged_step_in_errors: float = 4.0
-    """Newton's method for a crossing stops when the step is at most this multiple of the error of p."""
+    """Newton's method for a crossing stops when the step of p is at most this multiple of its error."""
     max_relative_frequency_error: float = 1e-2
     """A crossing with a larger relative error of its frequency is not located: from a poor guess, Newton's
     method for w may stop far from all roots of D, where errors are at least 0.16 (83 such stops)."""
-    relative_rounding_error: float = 4e-16
+    relative_rounding_of_path_variable: float = 4e-16
     """Relative rounding error of the path variable: two units in the last place."""
 
 
@@ -91,7 +91,7 @@ class CrossingSearch:
             try:
                 self._search_interval(a, b, intervals)
             except Unsolvable as reason:
-                intervals.retry_left_half_only((a, b), str(reason))
+                intervals.limit_search_to_left_half((a, b), str(reason))
                 self.crossings_by_p = {p: crossing for p, crossing in self.crossings_by_p.items() if p <= a}
         ordered = [self.crossings_by_p[p] for p in sorted(self.crossings_by_p)]
         return [c for c in ordered if self._may_lie_within(c, first, last)], intervals.end
@@ -106,7 +106,7 @@ class CrossingSearch:
         """Whether the interval (a, b) of p must be halved before its search: the interval is not short, the
         modes at b are not known, and the list of `max_crossings` crossings is likely to be full before b.
         length: length of the path."""
-        is_short = b - a < ARM_CROSSING_SETTINGS.min_halved_interval_fraction * length
+        is_short = b - a < ARM_CROSSING_SETTINGS.min_halved_interval_over_path * length
         if is_short or b in self.axis_modes.modes_by_p:
             return False
         max_pairs = ARM_CROSSING_SETTINGS.max_growing_pairs_per_max_crossings * 2 * max_crossings
@@ -114,8 +114,9 @@ class CrossingSearch:
         return has_many_modes and self.problem.expected_unstable_count(b) > max_pairs
 
     def _search_interval(self, a: float, b: float, intervals: IntervalQueue) -> None:
-        """Searches the interval (a, b) of p: stores the crossings found, or divides the interval, or stores
-        the interval as a gap if it is too short to be divided; raises Unsolvable."""
+        """Searches the interval (a, b) of p: stores the crossings found, or divides the interval into entries
+        of `intervals`, or stores the interval as a gap if it is too short to be divided; raises
+        Unsolvable."""
         left_modes = self.axis_modes.modes_at(a)
         right_modes = self.axis_modes.modes_at(b)
         # Equal counts leave room for a pair that crosses and returns.
@@ -144,13 +145,14 @@ class CrossingSearch:
     def _intervals_between_crossings(
         self, crossings: list[Threshold], left: ArmModes, right: ArmModes, length: float
     ) -> list[tuple[float, float]] | None:
-        """The intervals between crossings, in increasing order of p; None if the counts just before and just
-        after a crossing do not confirm the crossing, or it is not located. length: length of the path."""
+        """The intervals of p from `left` to `right` that remain without the surroundings of `crossings`, in
+        increasing order; None if a crossing is not located, or if the counts just before and just after a
+        crossing do not confirm it. length: length of the path."""
         settings = ARM_CROSSING_SETTINGS
         intervals: list[tuple[float, float]] = []
         start = left.p
         largest_modulus = max(left.largest_modulus, right.largest_modulus)
-        max_frequency = settings.max_frequency_per_largest_modulus * largest_modulus
+        max_frequency = settings.searched_frequency_over_largest_w * largest_modulus
         for crossing in crossings:
             p = self.problem.path.coordinate(crossing.value)
             p_before = max(start, p - settings.count_to_crossing_path_fraction * length)
@@ -217,7 +219,7 @@ class CrossingSearch:
             if not p_ends[0] <= p <= p_ends[1]:
                 return None
             w, slope, error = self.problem.eigenvalue_with_slope_and_error(guess, p)
-            p_error = error / abs(slope.real) + settings.relative_rounding_error * abs(p)
+            p_error = error / abs(slope.real) + settings.relative_rounding_of_path_variable * abs(p)
             if abs(w.real / slope.real) <= settings.converged_step_in_errors * p_error:
                 max_error = settings.count_to_crossing_path_fraction * (p_ends[1] - p_ends[0])
                 if self.axis_modes.computes_only_near_imaginary_axis(p) and not p_error <= max_error:
@@ -240,7 +242,8 @@ class CrossingSearch:
 
 
 def _are_same_crossing(first: Threshold, second: Threshold) -> bool:
-    """Whether two crossings are equal within the errors of the parameter and of the frequency."""
+    """Whether the crossings `first` and `second` are equal within the errors of the parameter and of the
+    frequency."""
     max_distance = ARM_CROSSING_SETTINGS.max_same_crossing_distance_in_errors * (first.error + second.error)
     max_difference = ARM_CROSSING_SETTINGS.same_crossing_frequency_tolerance * first.frequency
     is_near = abs(first.value - second.value) <= max_distance

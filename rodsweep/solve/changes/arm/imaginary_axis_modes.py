@@ -185,7 +185,10 @@ def interval_fraction_of_next_count(left: ArmModes, right: ArmModes) -> float:
             continue
         left_pair, right_pair = left_pairs[0], right_pairs[0]
         minimum, fraction = cubic_minimum_and_position(
-            left_pair.distance, right_pair.distance, length * left_pair.slope, length * right_pair.slope
+            left_pair.distance,
+            right_pair.distance,
+            length * left_pair.distance_slope,
+            length * right_pair.distance_slope,
         )
         if minimum < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * min(
             left_pair.distance, right_pair.distance
@@ -202,15 +205,16 @@ def interval_fraction_of_next_count(left: ArmModes, right: ArmModes) -> float:
 def _may_touch_imaginary_axis_between(
     left: ImaginaryAxisPair, right: ImaginaryAxisPair, length: float
 ) -> bool:
-    """Whether a distance whose cubic stays above zero may vanish within an interval: its tangents meet below
-    zero, or one tangent falls below zero within the interval and the slopes do not explain the change of the
-    pair. left, right: the pair at the ends. length: length of the interval."""
+    """Whether the distance of a pair from the imaginary axis may vanish within an interval although its cubic
+    interpolant stays above zero: the tangents of the distance meet below zero, or one tangent falls below
+    zero within the interval and the slopes do not explain the change of the pair. left, right: the pair at
+    the ends. length: length of the interval."""
     if min(left.min_distance_on_tangent(length), right.min_distance_on_tangent(-length)) >= 0:
         return False
     change = abs(right.distance - left.distance)
     unexplained_change = deviation_from_trapezoidal_rule(left[:2], right[:2], length)
     unexplained_frequency = deviation_from_trapezoidal_rule(left[2:], right[2:], length)
-    max_unexplained = IMAGINARY_AXIS_MODE_SETTINGS.max_relative_unexplained_change
+    max_unexplained = IMAGINARY_AXIS_MODE_SETTINGS.max_change_unexplained_by_slopes
     is_explained = unexplained_change <= max_unexplained * max(
         min(left.distance, right.distance), change
     ) and unexplained_frequency <= max_unexplained * max(abs(right.frequency - left.frequency), change)
@@ -218,10 +222,12 @@ def _may_touch_imaginary_axis_between(
 
 
 def _tangents_meet_below_zero(left: ImaginaryAxisPair, right: ImaginaryAxisPair, length: float) -> bool:
-    """Whether a distance that decreases at the left end of an interval and increases at its right end may be
-    zero between, because its tangents meet below zero. left, right: the pair at the ends. length: length of
-    the interval."""
-    if not left.slope < 0 < right.slope:
+    """Whether the distance of a pair from the imaginary axis decreases at the left end of an interval and
+    increases at its right end, with tangents that meet below zero: the distance may then vanish between the
+    ends. left, right: the pair at the ends. length: length of the interval."""
+    if not left.distance_slope < 0 < right.distance_slope:
         return False
-    meeting_place = (left.distance - right.distance + right.slope * length) / (right.slope - left.slope)
-    return left.distance + left.slope * meeting_place < 0
+    meeting_place = (left.distance - right.distance + right.distance_slope * length) / (
+        right.distance_slope - left.distance_slope
+    )
+    return left.distance + left.distance_slope * meeting_place < 0

@@ -14,7 +14,7 @@ class ImaginaryAxisModeSettings:
     modes near the imaginary axis are computed."""
     max_computed_modes: int = 200
     """Maximum number of leading eigenvalues computed for one arm."""
-    max_relative_unexplained_change: float = 0.1
+    max_change_unexplained_by_slopes: float = 0.1
     """If the tangent of a pair meets the imaginary axis within an interval, the slopes must explain the
     change of growth rate and of frequency to this fraction; else both ends may show different pairs. Two
     pairs that exchanged their parts agreed to 0.12 by chance."""
@@ -31,20 +31,21 @@ IMAGINARY_AXIS_MODE_SETTINGS = ImaginaryAxisModeSettings()
 
 class ImaginaryAxisPair(NamedTuple):
     """A pair of eigenvalues: distance from the imaginary axis and frequency, both in 1/tau2, with their
-    derivatives (`slope`, `frequency_slope`) with respect to the path variable p."""
+    derivatives (`distance_slope`, `frequency_slope`) with respect to the path variable p."""
 
     distance: float
-    slope: float
+    distance_slope: float
     frequency: float
     frequency_slope: float
 
     def min_distance_on_tangent(self, step: float) -> float:
-        """Smallest distance on the tangent over a change `step` of p."""
-        return self.distance + min(step * self.slope, 0.0)
+        """Smallest distance from the imaginary axis on the tangent over a change `step` of p."""
+        return self.distance + min(step * self.distance_slope, 0.0)
 
     def is_missing_in(self, pairs: "list[ImaginaryAxisPair]", step: float) -> bool:
-        """Whether `pairs`, known after a change `step` of p, should contain this pair, but do not."""
-        distance = self.distance + step * self.slope
+        """Whether this growing pair, by its tangent, is expected among `pairs`, the growing pairs after a
+        change `step` of p, but has no counterpart there."""
+        distance = self.distance + step * self.distance_slope
         frequency = self.frequency + step * self.frequency_slope
         settings = IMAGINARY_AXIS_MODE_SETTINGS
         return 0 < distance < settings.max_growth_rate_per_frequency * frequency and all(

@@ -20,7 +20,7 @@ from ...spectrum.path.followed_arms import FollowedArms
 from ...spectrum.problem import ArmProblem
 from ...spectrum.search import Spectrum, SpectrumRequest
 from ...spectrum.status import SpectrumStatus
-from ..path_problem import PathProblem, UniformPath
+from ..path_problem import PathEigenproblem, UniformPath
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,11 +31,13 @@ class ArmPathSettings:
     """Number of intervals into which a path of arms is first divided."""
     edge_shift_fraction: float = 0.0618
     """All edges but the first and the last are shifted by this fraction of an interval. With equal intervals,
-    an edge would lie on a Hopf point, where no count succeeds, if the range ends at twice its force."""
+    an edge would lie on a Hopf point, where no count succeeds, if the range ends at twice the force of this
+    point."""
     steps_per_interval: int = 4
     """Number of steps in which eigenvalues are followed through each of `first_interval_count` intervals."""
     followed_count_beyond_unstable: int = 4
-    """Number of leading eigenvalues, besides all unstable ones, that are proved complete at each step."""
+    """At each step, the list of all unstable eigenvalues and this many further leading eigenvalues is proved
+    complete."""
     spare_mode_count: int = 2
     """Number of modes computed in addition, if more than `followed_count_beyond_unstable` modes are
     requested."""
@@ -43,9 +45,9 @@ class ArmPathSettings:
     """No modes are followed where the estimate `expected_unstable_count` exceeds this number: at most 13
     modes can be followed, and the estimate is 0.9 to 1.9 times the true number."""
     family_W_over_max_abs_eigenvalue: float = 4.0
-    """Bound W of |w| of a family of arms for crossings, divided by the largest known |w|; twice the known |w|
-    suffices for the eigenvalues."""
-    max_count_distance_fraction: float = 0.25
+    """Bound W of |w| of a family of arms for crossings, divided by the largest known |w|; for the eigenvalues
+    themselves, twice the known |w| would suffice."""
+    max_known_count_distance_fraction: float = 0.25
     """A known count replaces a count in the middle of an interval if the distance of its path variable from
     the middle is less than this fraction of the interval's length."""
 
@@ -53,7 +55,7 @@ class ArmPathSettings:
 ARM_PATH_SETTINGS = ArmPathSettings()
 
 
-class ArmPath(PathProblem):
+class ArmPath(PathEigenproblem):
     """Path of arms that vary along the length or have a nonlinear law; the determinant D is computed from
     propagators. The leading eigenvalues are followed along the path once, and then from the nearest step to
     every requested p."""
@@ -172,7 +174,7 @@ class ArmPath(PathProblem):
         known_p = [
             p
             for p in self._unstable_counts
-            if abs(p - (low + high) / 2) < ARM_PATH_SETTINGS.max_count_distance_fraction * (high - low)
+            if abs(p - (low + high) / 2) < ARM_PATH_SETTINGS.max_known_count_distance_fraction * (high - low)
         ]
         nearest_p = min(known_p, key=lambda p: abs(p - (low + high) / 2), default=None)
         return None if nearest_p is None else self._unstable_counts[nearest_p]
@@ -184,7 +186,7 @@ class ArmPath(PathProblem):
             else None
         )
         if slope_and_error is None:
-            return self._determinant_along_path.eigenvalue(guess, p)
+            return self._determinant_along_path.eigenvalue_with_slope_and_error(guess, p)
         return (guess, *slope_and_error)
 
     def double_eigenvalue(self, x: float, p: float, expected_distance: float) -> LocatedEigenvalue:
@@ -228,6 +230,6 @@ class ArmPath(PathProblem):
         return modes_near_axis(arm_determinant(rod), min(max_frequency, hull_of(rod).box()[1]), known_w)
 
 
-def path_problem(path: ParameterPath) -> PathProblem:
+def path_problem(path: ParameterPath) -> PathEigenproblem:
     """The eigenvalue problem along `path`: `UniformPath` for uniform linear rods, else `ArmPath`."""
     return UniformPath(path) if path.rod.is_uniform_and_linear else ArmPath(path)

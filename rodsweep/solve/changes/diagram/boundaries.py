@@ -13,7 +13,7 @@ import numpy as np
 from ....arrays import Array
 from ....determinant.parameter_plane import ParameterPlane
 from ....determinant.stability_boundary import StabilityBoundary
-from ...continuation.curve_search import TracedCurves, trace_all_curves
+from ...continuation.curves_through_seeds import TracedCurves, trace_all_curves
 from ..threshold_kinds import ThresholdKind
 from .boundary_curves import BoundaryCurve, trace_boundary
 
@@ -22,7 +22,7 @@ from .boundary_curves import BoundaryCurve, trace_boundary
 class BoundaryAssignmentSettings:
     """Settings for the assignment of the thresholds found on rows to boundary curves."""
 
-    coordinate_tolerance: float = 1e-12
+    scaled_coordinate_tolerance: float = 1e-12
     """Two scaled coordinates are equal if their difference is smaller than this number."""
     relative_eigenvalue_tolerance: float = 1e-3
     """A threshold lies on a curve only if its eigenvalue and the eigenvalue of the curve at the same value of
@@ -100,8 +100,9 @@ class _BoundaryTracingProblem:
         return _distance_along_first_axis(self.plane, curve, self.seeds[seed])
 
     def are_identical(self, first: BoundaryCurve, second: BoundaryCurve) -> bool:
-        """Whether two curves are identical: they have the same `double_eigenvalue_sign` and share an end. The
-        test is needed near a crushed rod, where a threshold may not be found on its own curve."""
+        """Whether the curves `first` and `second` are identical: they have the same `double_eigenvalue_sign`
+        and share an end. The test is needed near a crushed rod, where a threshold may not be found on its own
+        curve."""
         ends = first.scaled_points[[0, -1], None] - second.scaled_points[None, [0, -1]]
         return (
             first.double_eigenvalue_sign == second.double_eigenvalue_sign
@@ -111,8 +112,8 @@ class _BoundaryTracingProblem:
 
 
 def boundary_curves_through(plane: ParameterPlane, seeds: list[BoundarySeed]) -> TracedCurves[BoundaryCurve]:
-    """Boundary curves through all thresholds `seeds`; no curve is traced from a threshold on a known
-    curve."""
+    """Boundary curves in `plane` through all thresholds `seeds`; no curve is traced from a threshold on a
+    known curve."""
     problem = _BoundaryTracingProblem(plane, seeds)
     return trace_all_curves(
         problem, range(len(seeds)), BOUNDARY_ASSIGNMENT_SETTINGS.max_distance_of_threshold_on_curve
@@ -120,9 +121,9 @@ def boundary_curves_through(plane: ParameterPlane, seeds: list[BoundarySeed]) ->
 
 
 def _distance_along_first_axis(plane: ParameterPlane, curve: BoundaryCurve, seed: BoundarySeed) -> float:
-    """Distance of a threshold from the curve along the first axis, at the threshold's value on the second
-    axis, in the scaled coordinate of the first axis; inf if the curve has another `double_eigenvalue_sign`,
-    or no point at this value with nearly the eigenvalue of the threshold."""
+    """Distance of the threshold `seed` from the curve along the first axis of `plane`, at the threshold's
+    value on the second axis, in the scaled coordinate of the first axis; inf if the curve has another
+    `double_eigenvalue_sign`, or no point at this value with nearly the eigenvalue of the threshold."""
     settings = BOUNDARY_ASSIGNMENT_SETTINGS
     if curve.double_eigenvalue_sign != seed.double_eigenvalue_sign:
         return math.inf
@@ -130,7 +131,7 @@ def _distance_along_first_axis(plane: ParameterPlane, curve: BoundaryCurve, seed
     points = curve.scaled_points
     distances_in_y = points[:, 1] - y
     # A threshold on a point of the curve must not fall between two chords by rounding.
-    distances_in_y[np.abs(distances_in_y) < settings.coordinate_tolerance] = 0.0
+    distances_in_y[np.abs(distances_in_y) < settings.scaled_coordinate_tolerance] = 0.0
     if len(points) == 1:
         return (
             float(abs(points[0, 0] - x))
@@ -155,9 +156,9 @@ def _distance_along_first_axis(plane: ParameterPlane, curve: BoundaryCurve, seed
 
 
 def _point_at_second_coordinate(boundary: StabilityBoundary, a: Array, b: Array, y: float) -> Array | None:
-    """The point (x, y, log |eigenvalue|) of a curve at the given y, between its points a and b, (3,) each;
-    None if not found. Newton's method starts from the chord. If this guess is too far from the curve, secant
-    steps along the curve follow."""
+    """The point (x, y, log |eigenvalue|) of a curve of `boundary` at the given y, between its points a and b,
+    (3,) each; None if not found. Newton's method starts from the chord. If this guess is too far from the
+    curve, secant steps along the curve follow."""
     for _ in range(BOUNDARY_ASSIGNMENT_SETTINGS.max_secant_steps):
         fraction = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
         guess = a + fraction * (b - a)

@@ -27,8 +27,8 @@ from .boundary_problem import (
 
 @dataclass(frozen=True, slots=True)
 class CurveFold:
-    """Extremum of the coordinate `axis` (0 or 1) on a curve: values and errors of both parameters, and the
-    eigenvalue at the extremum."""
+    """Extremum of the coordinate `axis` (0 or 1) on a curve: values and absolute errors of both parameters,
+    and the eigenvalue at the extremum."""
 
     axis: int
     parameter_values: tuple[float, float]
@@ -123,7 +123,7 @@ def _curve_with_folds(
                 if fold is not None:
                     folds.append(fold)
     # One by one: the rounding of NumPy's exp of an array depends on the position of an element in memory.
-    growth_rate, frequency = np.array([boundary.eigenvalue(h) for h in points[:, 2]]).T
+    growth_rate, frequency = np.array([boundary.growth_rate_and_frequency(h) for h in points[:, 2]]).T
     axes = boundary.plane.axes
     values = np.array([[axis.value(x) for axis, x in zip(axes, v[:2], strict=True)] for v in points])
     return BoundaryCurve(
@@ -172,15 +172,15 @@ def _tangent_error(boundary: StabilityBoundary) -> float:
     return (
         settings.double_eigenvalue_tangent_error
         if boundary.double_eigenvalue_sign
-        else settings.hopf_tangent_error
+        else settings.hopf_tangent_rounding_error
     )
 
 
 def _fold_at(
     boundary: StabilityBoundary, solution: BoundarySolution, axis: int, curve_error: float
 ) -> CurveFold:
-    """The fold of coordinate `axis` at a point of a boundary. curve_error: error of its position along the
-    curve."""
+    """The fold of coordinate `axis` at the point `solution` of a boundary. curve_error: error of the fold's
+    position along the curve."""
     axes = boundary.plane.axes
     first, second = (a.value(float(x)) for a, x in zip(axes, solution.v[:2], strict=True))
     units = [abs(a.parameter_per_scaled_coordinate(x)) for a, x in zip(axes, (first, second), strict=True)]
@@ -188,5 +188,5 @@ def _fold_at(
     errors = [
         unit * (solution.error if i == axis else solution.error + curve_error) for i, unit in enumerate(units)
     ]
-    growth_rate, frequency = boundary.eigenvalue(solution.v[2])
+    growth_rate, frequency = boundary.growth_rate_and_frequency(solution.v[2])
     return CurveFold(axis, (first, second), frequency, growth_rate, (errors[0], errors[1]))

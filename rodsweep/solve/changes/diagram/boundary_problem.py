@@ -23,7 +23,7 @@ BOUNDARY_STEP_CONTROL = StepControl(
     min_length=1e-9,
     target_angle=0.15,
     max_angle=0.3,
-    max_length_ratio=1.5,
+    max_successive_length_ratio=1.5,
     max_solutions=5000,
 )
 """Control of the arc length of continuation steps; each axis of the plane has length 1. Steps are short
@@ -40,8 +40,9 @@ class BoundaryCurveSettings:
     """Two neighbouring points of a curve are merged if their distance is at most this number, as at a start
     on an edge of the plane."""
     fold_location_tolerance: float = 1e-13
-    """Tolerance at a fold: largest component of the tangent, and smallest bracket over the step."""
-    hopf_tangent_error: float = 1e-12
+    """Tolerance at a fold: of the component of the tangent that is 0 there, and of its position on the step,
+    divided by the length of the step."""
+    hopf_tangent_rounding_error: float = 1e-12
     """Rounding error of the unit tangent to a curve of Hopf points."""
     double_eigenvalue_tangent_error: float = 1e-11
     """Error of the unit tangent to a curve of double eigenvalues, from differences in the Jacobian of D_w."""
@@ -92,7 +93,7 @@ class BoundaryCurveProblem:
 
     def step(self, previous: Sequence[BoundaryPoint], length: float) -> StepResult[BoundaryPoint]:
         """One continuation step: predicts a point at distance `length` along the last tangent and corrects it
-        to the curve. previous: points so far. Raises Unsolvable."""
+        to the curve. previous: points solved so far. Raises Unsolvable."""
         v, tangent = previous[-1]
         point = BoundaryPoint.with_tangent_along(
             self.boundary_point_near(v + length * tangent, tangent), tangent

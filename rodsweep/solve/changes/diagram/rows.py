@@ -59,7 +59,8 @@ class RowRequest:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiagramRow:
     """One row: class (`StabilityClass`) and number of unstable modes at each value, (values,), and all
-    thresholds along the row. unstable_count: -1 where unknown or crushed. seconds: time of the row."""
+    thresholds along the row. unstable_count: -1 where unknown or crushed. seconds: computing time of the row,
+    in s."""
 
     stability_class: NDArray[np.int8]
     """Value of `StabilityClass` at each value of the row's parameter, (values,)."""
@@ -95,14 +96,14 @@ def crushed_row(values: Array) -> DiagramRow:
 
 
 def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
-    """The row, searched over the values at which the rod is not crushed and, along F or k1, on to the
-    crushing force; a row of crushed rods is not searched."""
+    """The row of `request`, searched over the values at which the rod is not crushed and, along F or k1, on
+    to the crushing force; a row of crushed rods is not searched."""
     name = request.parameter_name
     values = request.parameter_values
     F = values if name == "F" else np.full(len(values), rod.F)
     k1 = values if name == "k1" else np.full(len(values), rod.k1)
-    relative_crushing_force = rod.material.relative_crushing_force(rod.taper)
-    crushing_force = k1 * relative_crushing_force
+    crushing_force_over_k1 = rod.material.crushing_force_over_k1(rod.taper)
+    crushing_force = k1 * crushing_force_over_k1
     is_uncrushed = crushing_force * (1 - CRUSHING_END_SETTINGS.relative_crushing_margin) > F
     is_crushed = crushing_force * (1 - CRUSHING_END_SETTINGS.relative_crushing_tolerance) <= F
     is_nearly_crushed = ~is_uncrushed & ~is_crushed
@@ -121,7 +122,7 @@ def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
         stop = rod.crushing_force * (1 - CRUSHING_END_SETTINGS.relative_crushing_margin)
     if name == "k1" and not is_uncrushed.all():
         start = (
-            rod.F / (relative_crushing_force * (1 - CRUSHING_END_SETTINGS.relative_crushing_margin))
+            rod.F / (crushing_force_over_k1 * (1 - CRUSHING_END_SETTINGS.relative_crushing_margin))
             if rod.F > 0
             else start
         )
@@ -143,7 +144,8 @@ def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
 def _row_of_one_class(
     status: ThresholdStatus, values: Array, rod_class: StabilityClass, message: str = ""
 ) -> DiagramRow:
-    """A row without thresholds, with the same class at all values."""
+    """A row without thresholds, with the class `rod_class` at all values. status, message: outcome of the
+    search."""
     return DiagramRow(
         stability_class=np.full(len(values), rod_class, dtype=np.int8),
         unstable_count=np.full(len(values), -1, dtype=np.int32),
@@ -169,7 +171,7 @@ def classes_and_unstable_counts(
         is_undecided |= np.abs(values - crossing.value) <= crossing.error
     if result.ended_early:
         is_undecided |= (values < result.searched_interval[0]) | (values > result.searched_interval[1])
-    low, high = result.open_range
+    low, high = result.range_of_further_crossings
     if not math.isnan(low):
         is_undecided |= (values >= low) & (values <= high)
         # Crossings in the open range are unknown; behind this range the count at the end applies.

@@ -14,7 +14,7 @@ from ...unsolvable import Unsolvable
 from ..thresholds_along_path import ThresholdSearchResult, find_thresholds
 
 
-class RangeSearch(NamedTuple):
+class SolvablePartSearch(NamedTuple):
     """Search of a row that starts at one of its values. result: None if nothing could be searched. failure:
     why nothing could be searched, or why a search along F ended early at a pull, F < 0; empty otherwise."""
 
@@ -29,18 +29,20 @@ def thresholds_of_solvable_part(
 
     If a row along F cannot be searched from its first pull on, the search begins at the first value of the
     row from which a search is possible, or at F = 0. inner_values: increasing values of the row between its
-    ends, (n,). certify: whether a proof is requested. Raises Unsolvable if the row cannot be searched from F
-    = 0 on either.
+    ends, (n,). certify: whether a proof is requested. Raises Unsolvable if the row cannot be searched, not
+    even from F = 0 on.
     """
     start, stop = row_ends
-    first_search = _search(rod, name, row_ends, certify)
+    first_search = _search_along_row(rod, name, row_ends, certify)
     if not first_search.failure and first_search.result is not None:
         return first_search.result
     later_starts: list[float] = []
     if name == "F":
         later_starts = [*list_of(inner_values[inner_values < 0]), *([0.0] if start < 0 < stop else [])]
     # If even the latest start fails, no part of the row can be searched.
-    last_search = _search(rod, name, (later_starts[-1], stop), certify) if later_starts else first_search
+    last_search = (
+        _search_along_row(rod, name, (later_starts[-1], stop), certify) if later_starts else first_search
+    )
     if last_search.result is None:
         raise Unsolvable(last_search.failure)
     if not later_starts:
@@ -53,7 +55,7 @@ def thresholds_of_solvable_part(
     solved_index = len(later_starts)
     while solved_index - failed_index > 1:
         middle_index = (failed_index + solved_index) // 2
-        search = _search(rod, name, (starts[middle_index], stop), certify)
+        search = _search_along_row(rod, name, (starts[middle_index], stop), certify)
         if search.failure:
             failed_index = middle_index
             failure = search.failure
@@ -69,14 +71,16 @@ def thresholds_of_solvable_part(
     return replace(result, ended_early=True, doubt_text="; ".join(filter(None, (message, result.doubt_text))))
 
 
-def _search(rod: Rod, name: str, row_ends: tuple[float, float], certify: bool) -> RangeSearch:
-    """Search along a row between `row_ends`; a search along F that ends early at a pull, F < 0, is a
-    failure."""
+def _search_along_row(
+    rod: Rod, name: str, row_ends: tuple[float, float], certify: bool
+) -> SolvablePartSearch:
+    """Search along a row, the parameter `name` of `rod` between `row_ends`; a search along F that ends early
+    at a pull, F < 0, is a failure."""
     try:
         result = find_thresholds(
             ParameterPath(rod.with_values(**{name: row_ends[0]}), name), *row_ends, certify
         )
     except Unsolvable as failure:
-        return RangeSearch(None, str(failure))
+        return SolvablePartSearch(None, str(failure))
     ends_early = name == "F" and result.ended_early and result.searched_interval[1] < min(row_ends[1], 0)
-    return RangeSearch(result, result.doubt_text if ends_early else "")
+    return SolvablePartSearch(result, result.doubt_text if ends_early else "")

@@ -20,9 +20,9 @@ MIN_MULTIPLIER_DISTANCE_FROM_ONE = 2e-16
 
 
 def relative_largest_y_rounding_error(solved: ConvergedOrbit) -> float:
-    """Relative error of the largest y of an orbit on any mesh, due to rounding: `relative_rounding_error`
-    divided by the distance of the nearest nontrivial multiplier from 1; 0 if there is no nontrivial
-    multiplier."""
+    """Relative error of the largest y of the orbit `solved` on any mesh, due to rounding:
+    `relative_rounding_error` divided by |m - 1|, m: the nontrivial multiplier over the period that is nearest
+    to 1; 0 if there is no nontrivial multiplier."""
     multipliers = solved.matrix.multipliers_over_solved_time_interval
     if len(multipliers) < 2:
         return 0.0
@@ -36,8 +36,8 @@ def relative_largest_y_rounding_error(solved: ConvergedOrbit) -> float:
 def with_largest_y_rounding_error(
     errors: CycleErrors, solved: ConvergedOrbit, measures: CycleMeasures
 ) -> CycleErrors:
-    """`errors`, in which the errors of the extrema are at least the effect of rounding,
-    `relative_largest_y_rounding_error`.
+    """The errors `errors` of the cycle `solved`, in which the errors of the extrema are at least the effect
+    of rounding, `relative_largest_y_rounding_error`.
 
     Two meshes of a comparison share no rounding errors, but may agree by coincidence.
     """

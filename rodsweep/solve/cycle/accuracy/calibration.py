@@ -55,20 +55,23 @@ class MeshErrorCalibration:
     coefficient_tails_and_orbit_size: Array
     """Coefficient tails in space, of each element, and in time, and size of the measured orbit, (elements +
     2,), from `error_indicators.coefficient_tails_and_orbit_size`."""
-    relative_parameter_change: float
+    parameter_change_since_measurement: float
     """Sum of the relative changes of the parameter since the measurement; inf if the errors no longer
     apply."""
     error_indicators: Array = field(default_factory=lambda: np.full(3, inf))
     """`error_indicators` of the measured orbit, (3,); inf if unknown."""
-    space_time_error_growth: Array = field(default_factory=lambda: np.ones(2))
+    error_growth_since_measurement: Array = field(default_factory=lambda: np.ones(2))
     """Estimated growth factors of the errors in space and in time since the measurement, (2,)."""
     last_harmonics_change: float = 0.0
     """Change, since the measurement, of the last harmonics of the tip's path (`error_indicators`)."""
 
     def arrays(self) -> dict[str, Array]:
-        """All fields except the growth factors as named arrays, for a checkpoint."""
+        """All fields except growth factors and `last_harmonics_change` as named arrays, for a checkpoint."""
         errors = {name: getattr(self, field) for name, field in CHECKPOINT_FIELDS.items()}
-        scalars = {"reach": np.array(self.relative_parameter_change), "calibrated_mesh": self.mesh.as_array}
+        scalars = {
+            "reach": np.array(self.parameter_change_since_measurement),
+            "calibrated_mesh": self.mesh.as_array,
+        }
         return errors | scalars
 
     @classmethod
@@ -76,14 +79,14 @@ class MeshErrorCalibration:
         """The calibration from the named arrays that `MeshErrorCalibration.arrays` returns."""
         mesh = OrbitMesh.from_array(arrays["calibrated_mesh"])
         errors: dict[str, Any] = {field: arrays[name] for name, field in CHECKPOINT_FIELDS.items()}
-        return cls(mesh=mesh, relative_parameter_change=float(arrays["reach"]), **errors)
+        return cls(mesh=mesh, parameter_change_since_measurement=float(arrays["reach"]), **errors)
 
     def with_errors_scaled_on_chain(
         self, orbit: Orbit, change: float, indicators: Array
     ) -> "MeshErrorCalibration":
-        """This calibration with the errors scaled to a later orbit of a chain; `relative_parameter_change` is
-        inf if the orbit has shrunk too much. change: relative change of the parameter since the previous
-        orbit. indicators: `error_indicators` of the later orbit, (3,)."""
+        """This calibration with the errors scaled to a later orbit of a chain;
+        `parameter_change_since_measurement` is inf if the orbit has shrunk too much. change: relative change
+        of the parameter since the previous orbit. indicators: `error_indicators` of the later orbit, (3,)."""
         tails = coefficient_tails_and_orbit_size(orbit)
         # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
         measured_tails = self.coefficient_tails_and_orbit_size
@@ -92,12 +95,12 @@ class MeshErrorCalibration:
         # The tail in time may belong to a field on which the cycle hardly depends; the lost energy is a sum.
         indicator_growth = (indicators / self.error_indicators)[:LAST_HARMONICS_INDEX].max()
         growth[1] = max(growth[1], float(indicator_growth))
-        relative_parameter_change = inf if has_shrunk else self.relative_parameter_change + change
+        relative_parameter_change = inf if has_shrunk else self.parameter_change_since_measurement + change
         return replace(
             self,
-            space_time_error_growth=growth,
+            error_growth_since_measurement=growth,
             last_harmonics_change=float((indicators - self.error_indicators)[LAST_HARMONICS_INDEX]),
-            relative_parameter_change=relative_parameter_change,
+            parameter_change_since_measurement=relative_parameter_change,
         )
 
     def with_errors_scaled_on_branch(self, orbit: Orbit) -> "MeshErrorCalibration":
@@ -107,54 +110,54 @@ class MeshErrorCalibration:
         present_tails = coefficient_tails_and_orbit_size(orbit)
         present_tails[-1] = self.coefficient_tails_and_orbit_size[-1]
         growth = error_growth_factors(self.coefficient_tails_and_orbit_size, present_tails)
-        return replace(self, space_time_error_growth=growth)
+        return replace(self, error_growth_since_measurement=growth)
 
     @property
     def with_outdated_errors(self) -> "MeshErrorCalibration":
-        """This calibration with an infinite `relative_parameter_change`: its errors no longer apply, its
-        rates still do."""
-        return replace(self, relative_parameter_change=inf)
+        """This calibration with an infinite `parameter_change_since_measurement`: its errors no longer apply,
+        its rates still do."""
+        return replace(self, parameter_change_since_measurement=inf)
 
     @property
     def is_valid(self) -> bool:
-        """Whether the scaled errors apply: `relative_parameter_change` and `space_time_error_growth` are
-        within their limits."""
+        """Whether the scaled errors apply: `parameter_change_since_measurement` and
+        `error_growth_since_measurement` are within their limits."""
         settings = MESH_ERROR_CALIBRATION_SETTINGS
-        is_near = self.relative_parameter_change <= settings.max_relative_parameter_change
-        return is_near and float(self.space_time_error_growth.max()) <= settings.max_error_growth
+        is_near = self.parameter_change_since_measurement <= settings.max_relative_parameter_change
+        return is_near and float(self.error_growth_since_measurement.max()) <= settings.max_error_growth
 
     @property
     def is_measured_at_orbit(self) -> bool:
-        """Whether the errors were measured at the orbit to which they are scaled, or the errors in time if
-        the errors in space were kept."""
-        return self.relative_parameter_change == 0 or (
-            self.last_harmonics_change == 0 and bool((self.space_time_error_growth == 1).all())
+        """Whether the errors were measured at the orbit to which they are scaled; if the errors in space were
+        kept from an earlier orbit, whether the errors in time were measured at this orbit."""
+        return self.parameter_change_since_measurement == 0 or (
+            self.last_harmonics_change == 0 and bool((self.error_growth_since_measurement == 1).all())
         )
 
     @property
     def can_reuse_space_errors(self) -> bool:
-        """Whether the scaled errors in space apply to a new measurement on the same mesh: a mesh of several
-        elements needs a higher order of every element to be finer in space, so that a comparison with such a
-        mesh costs more than a comparison with a mesh finer in time."""
+        """Whether a new measurement on the same mesh uses the scaled errors in space again: the errors still
+        apply, and the mesh has several elements. A mesh finer in space then has a higher order in every
+        element, and a comparison with it costs more than a comparison with a mesh finer in time."""
         return self.mesh.element_count > 1 and self.is_valid
 
     @property
-    def scaled_space_errors(self) -> Array:
+    def space_errors_scaled_to_orbit(self) -> Array:
         """Errors in space, (5,), scaled to the orbit as `estimated_cycle_errors` scales them."""
-        growth = np.full(ERROR_COUNT, self.space_time_error_growth.max())
-        growth[:2] = self.space_time_error_growth[0]
+        growth = np.full(ERROR_COUNT, self.error_growth_since_measurement.max())
+        growth[:2] = self.error_growth_since_measurement[0]
         scaled: Array = self.mesh_errors[0] * growth
         return scaled
 
     def is_valid_after_parameter_change(self, change: float) -> bool:
         """Whether the errors may still apply after a further relative change `change` of the parameter."""
         return (
-            self.relative_parameter_change + change
+            self.parameter_change_since_measurement + change
             <= MESH_ERROR_CALIBRATION_SETTINGS.max_relative_parameter_change
         )
 
     def min_remeasured_errors(self, orbit: Orbit) -> Array:
-        """Lower limits of errors in space and in time, (2, 5), that are measured again at `orbit` on this
+        """Lower limits, (2, 5), of the errors in space and in time that are measured again at `orbit` on this
         mesh. These limits are fractions of the current errors, reduced as the coefficient tails have
         decreased."""
         shrinkage = np.minimum(
@@ -173,7 +176,7 @@ class MeshErrorCalibration:
         requested relative accuracy `accuracy`. For the multiplier and the other extrema, errors in space and
         in time are scaled by the larger of the two growth factors, because an error was once seen to grow 2.7
         times as much as its tail."""
-        growth = self.space_time_error_growth
+        growth = self.error_growth_since_measurement
         space_errors, time_errors = self.mesh_errors * growth[:, None]
         errors = errors_with_safety_factors(space_errors, time_errors, accuracy)
         space_errors, time_errors = self.mesh_errors * growth.max()
@@ -231,7 +234,9 @@ def _measured_time_order(
     each, on the meshes `previous` and `mesh` with different numbers of time intervals."""
     # Radau IIA has the order 2 stages - 1, which stiff problems may reduce to stages + 1.
     min_order = mesh.stage_count + 1
-    log_interval_ratio = np.log(mesh.full_length_interval_count / previous.full_length_interval_count)
+    log_interval_ratio = np.log(
+        mesh.solved_duration_in_full_intervals / previous.solved_duration_in_full_intervals
+    )
     max_order = MESH_ERROR_CALIBRATION_SETTINGS.max_time_order_per_smallest_order * min_order
     order: Array = np.clip(_log_ratio(first_errors, second_errors) / log_interval_ratio, min_order, max_order)
     return order

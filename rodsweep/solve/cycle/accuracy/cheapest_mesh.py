@@ -24,7 +24,7 @@ def cheapest_mesh(calibration: MeshErrorCalibration, accuracy: float) -> OrbitMe
     min_order = max(limits.min_element_order, calibrated.order - settings.max_element_order_decrease)
     max_order = min(RESOLUTION_SETTINGS.max_order, calibrated.order + settings.max_element_order_increase)
     orders = np.arange(min_order, max_order + 1)
-    min_intervals = ceil(settings.min_time_interval_count_ratio * calibrated.interval_count)
+    min_intervals = ceil(settings.min_planned_over_current_intervals * calibrated.interval_count)
     min_intervals = max(limits.min_time_interval_count, min_intervals)
     max_intervals = settings.max_time_interval_count_ratio * calibrated.interval_count
     max_intervals = min(max_intervals, limits.max_time_interval_count)
@@ -41,7 +41,7 @@ def cheapest_mesh(calibration: MeshErrorCalibration, accuracy: float) -> OrbitMe
         calibration.time_convergence_order[:, None],
         calibrated.stage_count + 1,
     )
-    length_ratio = calibrated.full_length_interval_count / (interval_counts - 1)
+    length_ratio = calibrated.solved_duration_in_full_intervals / (interval_counts - 1)
     time_errors = errors_in_time[:, None] * length_ratio**time_convergence_order
     errors = errors_with_safety_factors(space_errors[:, :, None], time_errors[:, None, :], accuracy)
     period_error, y_error = errors[:2] / settings.planned_error_per_accuracy

@@ -78,7 +78,10 @@ class CoarserMeshes:
             order + order_difference + COARSER_MESH_SETTINGS.max_order_above_intended_mesh
         )
         interval_count = (
-            round(mesh.full_length_interval_count / (1 + COARSER_MESH_SETTINGS.added_time_interval_fraction))
+            round(
+                mesh.solved_duration_in_full_intervals
+                / (1 + COARSER_MESH_SETTINGS.added_time_interval_fraction)
+            )
             + 1
         )
         self._fine_mesh = mesh
@@ -104,7 +107,7 @@ class CoarserMeshes:
             and mesh.stage_count == self.coarse_mesh.stage_count
         )
 
-    def predicted_orbit_and_errors(self, mesh: OrbitMesh) -> tuple[Orbit, MeshErrorCalibration]:
+    def fine_mesh_prediction_and_errors(self, mesh: OrbitMesh) -> tuple[Orbit, MeshErrorCalibration]:
         """Returns (orbit, calibration): predicted orbit on the fine mesh `mesh`, and calibration of this mesh
         with predicted errors; raises Unsolvable."""
         space_cycle = self._cycle_on_mesh(replace(mesh, interval_count=self.coarse_mesh.interval_count))
@@ -138,7 +141,7 @@ class CoarserMeshes:
 
     def _errors_of_finer_mesh(self, finer_cycle: ComparedCycle, error_ratio: Array | float) -> Array:
         """Errors of a finer mesh, (4,), in the order of `tip_path_differences`, from the difference between
-        the cycles on this mesh and on the coarse mesh.
+        the cycle `finer_cycle` on this mesh and the cycle on the coarse mesh.
 
         error_ratio: errors of the coarse mesh divided by the errors of the finer mesh, for all errors or
         (4,).
@@ -152,8 +155,8 @@ class CoarserMeshes:
         return errors
 
     def _time_interval_count_ratio(self, mesh: OrbitMesh) -> float:
-        """The `full_length_interval_count` of `mesh`, divided by that of the coarse mesh."""
-        return mesh.full_length_interval_count / self.coarse_mesh.full_length_interval_count
+        """The `solved_duration_in_full_intervals` of `mesh`, divided by that of the coarse mesh."""
+        return mesh.solved_duration_in_full_intervals / self.coarse_mesh.solved_duration_in_full_intervals
 
 
 def _pessimistic_log_space_error_decay(orbit: Orbit) -> float:

@@ -18,7 +18,7 @@ from ...orbit.tip_path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_IND
 from ..integration_settings import INTEGRATION_SETTINGS
 from .settings import MESH_ERROR_CALIBRATION_SETTINGS
 
-MULTIPLIER_ERROR_INDEX = 4
+LARGEST_MULTIPLIER_ERROR_INDEX = 4
 """Index of the error of the largest nontrivial multiplier in the error arrays of a calibration."""
 
 
@@ -90,7 +90,7 @@ def errors_with_safety_factors(space_errors: Array, time_errors: Array, accuracy
     # Single quantities may agree on two meshes by chance; the whole path cannot.
     path_error = space_errors[PATH_INDEX] + time_errors[PATH_INDEX]
     time_path_error = (
-        MESH_ERROR_CALIBRATION_SETTINGS.min_error_per_time_path_distance * time_errors[PATH_INDEX]
+        MESH_ERROR_CALIBRATION_SETTINGS.min_error_over_tip_path_distance * time_errors[PATH_INDEX]
     )
     larger_errors = [np.maximum(part[PERIOD_INDEX], part[Y_INDEX]) for part in (space_errors, time_errors)]
     # Period and largest y come from the same orbit, so neither is much more accurate than the other.
@@ -113,7 +113,7 @@ def errors_with_safety_factors(space_errors: Array, time_errors: Array, accuracy
             scaled_errors[EXTREMUM_INDEX],
             MESH_ERROR_CALIBRATION_SETTINGS.min_extrema_error_over_path_distance * path_error,
         ),
-        scaled_errors[MULTIPLIER_ERROR_INDEX],
+        scaled_errors[LARGEST_MULTIPLIER_ERROR_INDEX],
     ]
     min_error = max(
         CYCLE_ERROR_SETTINGS.min_error_over_accuracy * accuracy, CYCLE_ERROR_SETTINGS.relative_rounding_error

@@ -21,8 +21,8 @@ from .settings import MESH_ERROR_CALIBRATION_SETTINGS
 ENERGY_LOSS_INDEX, AMPLITUDE_ERROR_INDEX, LAST_HARMONICS_INDEX = range(3)
 """Indices into the array that `error_indicators` returns."""
 LAST_HARMONIC_COUNT = 3
-"""Number of the last harmonics. The path of a symmetric orbit has even harmonics in x and odd harmonics in y
-and theta; only the slopes determine the very last harmonic."""
+"""Number of last harmonics of the tip's path in the indicators. The path of a symmetric orbit has even
+harmonics in x and odd harmonics in y and theta; only the slopes determine the very last harmonic."""
 
 
 def error_indicators(solved: ConvergedOrbit, motion: CycleMotion) -> Array:
@@ -32,12 +32,12 @@ def error_indicators(solved: ConvergedOrbit, motion: CycleMotion) -> Array:
 
     w: energy lost by the collocation in the solved part of the period. E: energy of the motion. E is
     proportional to the squared amplitude, so the loss w changes the amplitude by the fraction w/(2 E). A
-    change of the amplitude decays at the rate |ln h| per part, h: the nontrivial multiplier of the slowest
-    decay over the solved part. If w is lost at a constant rate, the amplitude has the error w/(2 E |ln h|).
-    Near a fold or a Hopf point, where h = 1, this error is large.
+    change of the amplitude decays at the rate |ln h| per solved part, h: the nontrivial multiplier of the
+    slowest decay over the solved part. If w is lost at a constant rate, the amplitude has the error w/(2 E
+    |ln h|). Near a fold or a Hopf point, where h = 1, this error is large.
     """
     orbit = solved.orbit
-    means = orbit.power_means_and_least_stretch
+    means = orbit.mean_powers_and_least_stretch
     # Over a period a cycle gains no energy, so the imbalance is the error of the collocation.
     lost_energy = abs(means.injection_mean - means.dissipation_mean) * orbit.solved_duration
     # The squared energy norm is twice the elastic energy.
@@ -64,8 +64,8 @@ def _slowest_decay_over_solved_time_interval(multipliers: Complex) -> float:
 
 
 def coefficient_tails_and_orbit_size(orbit: Orbit) -> Array:
-    """Relative tails of an orbit in space, of each element, and in time, not below a minimum, and size of the
-    orbit, (elements + 2,)."""
+    """Relative coefficient tails of an orbit, in space for each element, then in time, and the size of the
+    orbit, (elements + 2,). Tails are at least `min_coefficient_tail`."""
     tails = np.maximum(
         smooth_element_and_time_tails(orbit), MESH_ERROR_CALIBRATION_SETTINGS.min_coefficient_tail
     )
@@ -100,7 +100,10 @@ def squared_tail_growth(earlier_tails: Array, later_tails: Array) -> Array:
         )
     earlier, later = (
         np.append(
-            np.maximum(tails[:-2], MESH_ERROR_CALIBRATION_SETTINGS.min_element_tail_ratio * tails[:-2].max()),
+            np.maximum(
+                tails[:-2],
+                MESH_ERROR_CALIBRATION_SETTINGS.min_tail_over_largest_element_tail * tails[:-2].max(),
+            ),
             tails[-2:],
         )
         for tails in (earlier_tails, later_tails)

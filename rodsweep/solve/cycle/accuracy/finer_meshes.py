@@ -45,12 +45,14 @@ class FinerMeshSettings:
 FINER_MESH_SETTINGS = FinerMeshSettings()
 
 
-def finer_meshes_and_removed_fraction(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
+def finer_meshes_and_removed_time_error(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
     """Returns ((space, time), fraction): the mesh finer in space, the mesh finer in time, and the fraction of
     the error in time that the mesh finer in time removes."""
     interval_count = ceil((1 + FINER_MESH_SETTINGS.added_time_interval_fraction) * mesh.interval_count)
     # Errors in time fall with this power of the full intervals; the last two intervals have half the length.
-    removed_fraction = 1 - (mesh.full_length_interval_count / (interval_count - 1)) ** (mesh.stage_count + 1)
+    removed_fraction = 1 - (mesh.solved_duration_in_full_intervals / (interval_count - 1)) ** (
+        mesh.stage_count + 1
+    )
     return (
         mesh.with_order(mesh.order + FINER_MESH_SETTINGS.element_order_increase),
         replace(mesh, interval_count=interval_count),
@@ -65,12 +67,13 @@ def measured_mesh_error_calibration(
 
     accuracy: requested relative accuracy. previous: calibration at a nearby orbit, on any mesh, for the
     convergence rates (`mesh_error_calibration`) and lower limits of errors on the same mesh; None if the
-    rates are estimated from the coefficients of the orbit and the number of stages. If `previous` keeps its
-    errors in space, only the errors in time are measured again, unless their sum exceeds the accuracy.
+    rates are estimated from the coefficients of the orbit and the number of stages. If the errors in space of
+    `previous` can be reused, only the errors in time are measured again, unless the resulting error estimate
+    exceeds the accuracy.
     """
     mesh = mesh_of_orbit(solved.orbit)
     cycle = ComparedCycle(solved)
-    (space_mesh, time_mesh), removed_fraction = finer_meshes_and_removed_fraction(mesh)
+    (space_mesh, time_mesh), removed_fraction = finer_meshes_and_removed_time_error(mesh)
     tolerance = FINER_MESH_SETTINGS.newton_tolerance_per_accuracy * accuracy
 
     def errors_beside(finer_mesh: OrbitMesh) -> Array:
@@ -93,16 +96,18 @@ def measured_mesh_error_calibration(
     min_space_errors, min_time_errors = same_mesh.min_remeasured_errors(solved.orbit)
     time_errors = np.maximum(time_errors, min_time_errors)
     if same_mesh.can_reuse_space_errors:
-        calibration = calibration_with(same_mesh.scaled_space_errors, time_errors)
+        calibration = calibration_with(same_mesh.space_errors_scaled_to_orbit, time_errors)
         if calibration.estimated_cycle_errors(accuracy).largest_weighted_error <= accuracy:
-            return replace(calibration, relative_parameter_change=same_mesh.relative_parameter_change)
+            return replace(
+                calibration, parameter_change_since_measurement=same_mesh.parameter_change_since_measurement
+            )
     return calibration_with(np.maximum(errors_beside(space_mesh), min_space_errors), time_errors)
 
 
 def with_error_indicators(calibration: MeshErrorCalibration, indicators: Array) -> MeshErrorCalibration:
     """The calibration of a mesh at an orbit with the `error_indicators` of this orbit, (3,). The estimated
-    error of the amplitude, one of the indicators, is a lower limit of the error of the largest y in time,
-    which may be small only because it changes its sign near the cycle."""
+    error of the amplitude, one of the indicators, is a lower limit of the error in time of the largest y,
+    because the measured error may be small only because it changes its sign near the cycle."""
     errors = calibration.mesh_errors.copy()
     amplitude_error = indicators[AMPLITUDE_ERROR_INDEX] / MESH_ERROR_CALIBRATION_SETTINGS.error_safety_factor
     errors[1, Y_INDEX] = max(errors[1, Y_INDEX], amplitude_error)

@@ -14,7 +14,7 @@ import numpy as np
 from ....arrays import Array
 from ....model.compiled.compilation import compiled
 from ...orbit.measures import CycleMotion
-from ...orbit.orbit import Orbit, node_times
+from ...orbit.orbit import Orbit, node_time_fractions
 from ...orbit.time_grading import UNIFORM_TIME_GRADING
 
 
@@ -30,7 +30,7 @@ class MinimalPeriodSettings:
     number times the relative error of the extrema."""
     min_certain_harmonic_ratio: float = 1e-6
     """A harmonic is not certainly nonzero if its size divided by the size of the largest harmonic is at most
-    this: the error estimate applies to the tip, and the bending strain may have a larger error."""
+    this number: the error estimate applies to the tip, and the bending strain may have a larger error."""
 
 
 MINIMAL_PERIOD_SETTINGS = MinimalPeriodSettings()
@@ -38,8 +38,9 @@ MINIMAL_PERIOD_SETTINGS = MinimalPeriodSettings()
 
 def common_harmonic_divisor(motion: CycleMotion, min_ratio: float) -> int:
     """Greatest common divisor of the numbers of all harmonics of the bending strain larger than `min_ratio`
-    times the largest harmonic; 0 if all harmonics are 0. If the tip's angle alone gives 1, the harmonics of
-    the strain are not computed: a motion whose tip does not repeat within the period does not repeat."""
+    times the largest harmonic; 0 if all harmonics are 0. If the harmonics of the tip's angle alone give 1,
+    those of the strain are not computed: a motion whose tip does not repeat within the period does not repeat
+    either."""
     if _divisor_from_harmonic_sizes(motion.tip_angle_harmonic_sizes, min_ratio) == 1:
         return 1
     return int(_divisor_from_harmonic_sizes(motion.curvature_harmonic_sizes, min_ratio))
@@ -78,7 +79,7 @@ def restricted_to_minimal_period(orbit: Orbit) -> Orbit:
     divisor = common_harmonic_divisor(CycleMotion(orbit), MINIMAL_PERIOD_SETTINGS.min_harmonic_ratio)
     if divisor == 1:
         return orbit
-    times = node_times(orbit.interval_count, orbit.stage_count)
+    times = node_time_fractions(orbit.interval_count, orbit.stage_count)
     # A symmetric orbit bends in odd harmonics only, so its divisor is odd and the shorter orbit is symmetric.
     values = np.append(orbit.states_at_time_fractions(times / divisor), orbit.period / divisor)
     # The grading was fitted to several minimal periods, so the shorter orbit starts with a uniform one.

@@ -18,7 +18,7 @@ def allowed_distance_from_matrix_orbit(accuracy: float) -> float:
     for multipliers and tangent of the relative accuracy `accuracy`; between `min_distance_from_matrix_orbit`
     and `max_distance_from_matrix_orbit` of `REFINEMENT_SETTINGS`."""
     settings = REFINEMENT_SETTINGS
-    distance = settings.matrix_orbit_distance_per_accuracy * accuracy
+    distance = settings.max_matrix_distance_over_accuracy * accuracy
     distance = max(distance, settings.min_distance_from_matrix_orbit)
     return min(distance, settings.max_distance_from_matrix_orbit)
 

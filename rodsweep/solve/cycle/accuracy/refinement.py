@@ -98,16 +98,16 @@ def refined_cycle_of_any_period(
                 fewest = settings.min_time_intervals_for_prediction
                 first_mesh = replace(first_mesh, interval_count=max(first_mesh.interval_count, fewest))
                 with suppress(Unsolvable):
-                    return _cycle_predicted_from_coarser_meshes(first_mesh, near_orbit, accuracy, workspace)
+                    return _cycle_with_predicted_errors(first_mesh, near_orbit, accuracy, workspace)
             mesh = mesh_from_coefficient_tails(near_orbit, mesh_accuracy, stages)
             solved = _solve_on_mesh(mesh, rough_orbit, mesh_accuracy, parameter_name)
             return cycle_with_measured_errors(solved, None, accuracy, parameter_name)
         except Unsolvable:
             # Only symmetric cycles are born at Hopf points.
-            if mesh_accuracy <= settings.min_accuracy_for_mesh_choice or not orbit.is_symmetric:
+            if mesh_accuracy <= settings.finest_accuracy_for_mesh_choice or not orbit.is_symmetric:
                 raise
             mesh_accuracy *= settings.accuracy_factor_after_mesh_without_cycle
-            mesh_accuracy = max(mesh_accuracy, settings.min_accuracy_for_mesh_choice)
+            mesh_accuracy = max(mesh_accuracy, settings.finest_accuracy_for_mesh_choice)
             mesh = mesh_from_coefficient_tails(orbit, mesh_accuracy, orbit.stage_count)
             cost = mesh.interval_count * mesh.unknown_count**3
             if cost > settings.max_mesh_cost_after_mesh_without_cycle:
@@ -115,7 +115,7 @@ def refined_cycle_of_any_period(
             start = mesh.interpolated_orbit(orbit)
 
 
-def _cycle_predicted_from_coarser_meshes(
+def _cycle_with_predicted_errors(
     mesh: OrbitMesh, start: Orbit, accuracy: float, workspace: NewtonWorkspace
 ) -> RefinedCycle:
     """A single cycle with errors predicted from coarser meshes, on the mesh `mesh` or a finer mesh. start: an
@@ -128,7 +128,7 @@ def _cycle_predicted_from_coarser_meshes(
     # No mesh reduces the effect of rounding, which other errors need not fall below.
     sufficient_error = max(accuracy, coarser_meshes.relative_largest_y_rounding_error)
     max_error = inf
-    orbit, calibration = best = coarser_meshes.predicted_orbit_and_errors(mesh)
+    orbit, calibration = best = coarser_meshes.fine_mesh_prediction_and_errors(mesh)
     for _ in range(REFINEMENT_SETTINGS.max_meshes_per_cycle):
         error = calibration.estimated_cycle_errors(accuracy).largest_weighted_error
         if error < best[1].estimated_cycle_errors(accuracy).largest_weighted_error:
@@ -144,7 +144,7 @@ def _cycle_predicted_from_coarser_meshes(
             break
         if not coarser_meshes.can_predict(mesh):
             coarser_meshes = CoarserMeshes(mesh, orbit, accuracy, workspace)
-        orbit, calibration = coarser_meshes.predicted_orbit_and_errors(mesh)
+        orbit, calibration = coarser_meshes.fine_mesh_prediction_and_errors(mesh)
     solved = require_similar_size(
         solve_by_newton(best[0], newton_tolerance(accuracy), workspace), start.max_energy_norm
     )
@@ -232,7 +232,7 @@ def refined_cycle(
             cycle.orbit,
             max(
                 accuracy / REFINEMENT_SETTINGS.accuracy_divisor_if_stability_undecided,
-                REFINEMENT_SETTINGS.min_accuracy_for_mesh_choice,
+                REFINEMENT_SETTINGS.finest_accuracy_for_mesh_choice,
             ),
             workspace,
             parameter_name,

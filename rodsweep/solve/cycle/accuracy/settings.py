@@ -20,7 +20,7 @@ class MeshErrorCalibrationSettings:
     min_extrema_error_over_path_distance: float = 1.6
     """Lower limit of the error estimate of the other extrema, divided by the sum of the distances between the
     tip's paths for different elements and for different time intervals."""
-    min_error_per_time_path_distance: float = 0.004
+    min_error_over_tip_path_distance: float = 0.004
     """This factor times the distance between the tip's paths for different time intervals is added to the
     lower limits of the error estimates of period and largest y. The distance is largest in theta, whose
     errors matter least."""
@@ -53,7 +53,7 @@ class MeshErrorCalibrationSettings:
     """Upper limit of a measured order of convergence in time, divided by the smallest order, stages + 1."""
     max_element_order_decrease: int = 3
     """Largest decrease of the order of the elements from the current mesh to a planned mesh."""
-    min_time_interval_count_ratio: float = 0.6
+    min_planned_over_current_intervals: float = 0.6
     """Lower limit of the ratio of the numbers of time intervals, planned mesh to current mesh."""
     max_element_order_increase: int = 12
     """Largest increase of the order of the elements from the current mesh to a planned mesh; the convergence
@@ -73,7 +73,7 @@ class MeshErrorCalibrationSettings:
     """Lower limit of an error that is measured again on the same mesh, divided by the previous error scaled
     with the tails. Near a change of sign, an error is small at one cycle, and three cycles later as large as
     before."""
-    min_element_tail_ratio: float = 1e-3
+    min_tail_over_largest_element_tail: float = 1e-3
     """Lower limit of the tail of an element by which errors are scaled, divided by the largest tail of all
     elements. Of two elements, the one with a tail of 0.07 times the largest determined the errors, which grew
     four times as much as the square of the largest tail."""
@@ -95,7 +95,7 @@ class RefinementSettings:
     accuracy_divisor_if_stability_undecided: float = 100.0
     """A cycle whose largest nontrivial multiplier has modulus 1 within its error is solved again with the
     accuracy divided by this number."""
-    matrix_orbit_distance_per_accuracy: float = 3.0
+    max_matrix_distance_over_accuracy: float = 3.0
     """Largest relative distance between a cycle and the orbit whose matrix gives its multipliers, divided by
     the accuracy."""
     min_distance_from_matrix_orbit: float = 1e-7
@@ -106,7 +106,7 @@ class RefinementSettings:
     multiplier_error_per_matrix_distance: float = 10.0
     """Relative error of the multipliers divided by the sum of two numbers: the relative distance between the
     cycle and the orbit at which the matrix was assembled, and the error of the trivial multiplier."""
-    min_accuracy_for_mesh_choice: float = 1e-12
+    finest_accuracy_for_mesh_choice: float = 1e-12
     """Smallest relative accuracy for which a mesh is chosen; smaller errors are rounding errors."""
     min_first_mesh_accuracy: float = 1e-7
     """Smallest relative accuracy for which a first mesh is chosen from the coefficient tails of a nearby
@@ -118,8 +118,8 @@ class RefinementSettings:
     """If a mesh is so coarse that the rod has no cycle on this mesh, the next mesh is chosen for the accuracy
     times this factor."""
     max_mesh_cost_after_mesh_without_cycle: float = 1e8
-    """After a mesh without a cycle, a finer mesh is tried only if its number of time intervals times its
-    cubed number of unknowns is at most this number. Cycles near a Hopf point need fewer than 20 intervals and
+    """After a mesh without a cycle, a finer mesh is tried only if (number of time intervals) (number of
+    unknowns)^3 of this mesh is at most this number. Cycles near a Hopf point need fewer than 20 intervals and
     150 unknowns; without this limit, a motion that never repeats costs a minute."""
     first_mesh_accuracy_ratio: float = 0.5
     """Accuracy for which the first mesh of a single cycle is chosen, divided by the requested accuracy: a
@@ -133,7 +133,7 @@ class RefinementSettings:
     meshes, divided by the accuracy, is at most this number; the largest observed ratio was 4.4."""
     always_accepted_prediction_distance: float = 1e-9
     """Predicted errors are always accepted if the relative distance of a cycle from its prediction is at most
-    this, because of rounding errors."""
+    this number: rounding errors may cause such a distance."""
     min_solved_to_start_size_ratio: float = 0.2
     """Smallest size of a solved orbit divided by the size of Newton's start; a smaller orbit is a different
     motion."""

@@ -24,20 +24,22 @@ class AmplitudeEquationSettings:
 
     max_slow_growth_per_return: float = 0.2
     """The final amplitude of a motion is predicted instead of integrated if the linear and the measured
-    growth per return are at most this in modulus."""
+    growth per return are at most this number in modulus."""
     min_cubic_growth_over_noise: float = 10.0
-    """A new measurement replaces an earlier c if |c| a^2 exceeds this number times the noise, so that the
-    noise is at most a tenth of c a^2. A c measured within the noise may have the wrong sign."""
+    """A new measurement replaces an earlier c if |c| a^2 exceeds this number times the noise
+    (`AmplitudeEquation.growth_error`), so that the noise is at most a tenth of c a^2. A c measured within the
+    noise may have the wrong sign."""
     min_scaling_factor_change: float = 0.1
     """The state is not scaled if the factor to the predicted amplitude differs from 1 by less than this
-    number, because Newton's method converges."""
+    number, because Newton's method then converges from the state as it is."""
     decaying_state_scaling_factor: float = 0.7
     """Factor by which a slowly decaying motion is scaled; a growing motion with c < 0 is scaled by the
     inverse. The factor is close enough to 1 not to miss a cycle."""
     max_state_scaling_factor: float = 4.0
     """Largest factor by which a state is scaled in one jump; the smallest factor is the inverse."""
     min_returns_for_slow_limit: int = 10
-    """Smallest number of returns for the coefficients of |z|^2 and |z|^4 in the growth of a slow motion."""
+    """Smallest number of returns from which the coefficients of |z|^2 and |z|^4 in the growth of a slow
+    motion are determined."""
     linear_decay_tolerance: float = 0.05
     """A decaying motion ends at the straight rod if its decay rate and period differ by less than this
     fraction from the decay rate and the period of the leading mode."""
@@ -109,9 +111,9 @@ class AmplitudeEquation:
         return linear_growth < 0 and (is_linear or is_small) and self._has_period_of_mode(times)
 
     def decays_no_slower_than_mode(self, times: Array, states: Array) -> bool:
-        """Whether a motion decays at least 1 - max_slow_growth_per_return times as fast as the leading mode,
-        so that no cycle is near. The decay of a slow mode with c > 0 may be smaller by `growth_error`. times:
-        (k,); states: (k, unknowns)."""
+        """Whether a motion decays at least (1 - `max_slow_growth_per_return`) times as fast as the leading
+        mode, so that no cycle is near. The decay of a slow mode with c > 0 may be smaller by `growth_error`.
+        times: (k,); states: (k, unknowns)."""
         growth, linear_growth = self.measured_and_linear_growth(times, states)
         is_known = self.cubic_coefficient > 0 and self.is_slow_mode(times, states)
         return linear_growth < 0 and growth < linear_growth * (

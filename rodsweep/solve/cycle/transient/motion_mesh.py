@@ -28,13 +28,13 @@ class MotionMeshSettings:
     phase of the whole later motion. The integration takes a quarter longer than with `accuracy`, and its
     errors were 30 to 500 times smaller on four arms."""
     order_refinement_factor: float = 1.5
-    """Factor on the order of the elements, if a motion repeats on its mesh but no cycle is found near this
-    motion: compressed rubber may bend more sharply than linear waves."""
+    """Factor by which the order of the elements increases if a motion repeats on its mesh but no cycle is
+    found near this motion: compressed rubber may bend more sharply than linear waves."""
     max_refinements: int = 3
     """Maximum number of times that the mesh of a motion is refined."""
     max_refined_nodes: int = 64
     """Maximum number of nodes of a refined mesh; with more nodes a motion takes minutes."""
-    expected_mode_count: int = 3
+    first_mesh_mode_count: int = 3
     """Number of modes that the first mesh resolves; the mesh is refined for the cycle later."""
     wave_number_per_root_force: float = 2.5
     """Largest expected wave number of a cycle, in 1/L, divided by sqrt(F), F in k3/L^2; 1/sqrt(F) is the
@@ -64,14 +64,14 @@ def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
     """The first mesh for the integration of the motion of `rod` to the relative accuracy `accuracy`."""
     wave_number = MOTION_MESH_SETTINGS.wave_number_per_root_force * abs(rod.F) ** 0.5
     if not rod.is_uniform_and_linear:
-        modal_mesh = arm_mesh(rod, MOTION_MESH_SETTINGS.expected_mode_count, accuracy)
+        modal_mesh = arm_mesh(rod, MOTION_MESH_SETTINGS.first_mesh_mode_count, accuracy)
         mesh = arm_elements(rod, wave_number, accuracy)
         # The bends of a large motion may be sharper than those of its modes.
         finest_mesh = max(modal_mesh, mesh, key=lambda each: each.node_count)
         return mesh_with_edges(finest_mesh.edges, finest_mesh.order)
     max_wave_number = max(
         expected_wave_number(
-            MOTION_MESH_SETTINGS.expected_mode_count, largest_growth_and_wave_number(rod)[1]
+            MOTION_MESH_SETTINGS.first_mesh_mode_count, largest_growth_and_wave_number(rod)[1]
         ),
         wave_number,
     )
@@ -85,7 +85,7 @@ def accuracy_of_motion_mesh(is_stored: bool) -> float:
     return MOTION_MESH_SETTINGS.accuracy_of_stored_motion if is_stored else MOTION_MESH_SETTINGS.accuracy
 
 
-def motion_meshes(rod: Rod, is_stored: bool) -> Iterator[Mesh]:
+def motion_meshes_by_refinement(rod: Rod, is_stored: bool) -> Iterator[Mesh]:
     """Yields the first mesh for the integration of the motion of `rod`, and then finer meshes. is_stored:
     whether the path of the motion is stored."""
     mesh = motion_mesh(rod, accuracy_of_motion_mesh(is_stored))
@@ -119,12 +119,11 @@ def coarse_mesh_for_branch_to_cycle(rod: Rod) -> Mesh:
 
 
 def rod_for_time_integration(rod: Rod, distance: float = 1.0) -> Rod:
-    """The rod with k1 and k2 at the base of at most MOTION_MESH_SETTINGS.max_stiffness, and with gamma3 and
-    gamma1 of at least `min_rotational_drag` and `min_axial_drag` at the base and at every row of a profile; a
-    limiting rod (k1 = inf, k2 = inf or gamma3 = 0) cannot be integrated in time. distance: distance of the
-    replaced values from these limits, divided by the distance in the settings. Larger stiffnesses along the
-    arm stay: they cost no digits, because the unknowns of `ExplicitSystem` are scaled with the
-    compliances."""
+    """A rod near `rod` that can be integrated in time; a limiting rod (k1 = inf, k2 = inf or gamma3 = 0)
+    cannot. At the base k1 and k2 are at most MOTION_MESH_SETTINGS.max_stiffness / `distance`; at the base and
+    in every row of a profile gamma3 and gamma1 are at least `distance` times `min_rotational_drag` and
+    `min_axial_drag`. Larger stiffnesses along the arm stay: they cost no digits, because the unknowns of
+    `ExplicitSystem` are scaled with the compliances."""
     least = {
         "gamma3": distance * MOTION_MESH_SETTINGS.min_rotational_drag,
         "gamma1": distance * MOTION_MESH_SETTINGS.min_axial_drag,

@@ -10,7 +10,7 @@ from ....discretization.plane_equations import write_balance
 from ....discretization.stress.form import StressForm
 from ...motion.integrator import Trajectory
 from ...orbit.matrix.workspace import require_enough_stages
-from ...orbit.orbit import Orbit, node_times
+from ...orbit.orbit import Orbit, node_time_fractions
 from ...orbit.symmetry import NO_SYMMETRY, REFLECTION
 
 
@@ -38,8 +38,8 @@ NEWTON_FROM_MOTION_SETTINGS = NewtonFromMotionSettings()
 def orbit_from_motion(
     system: ExplicitSystem, form: StressForm, run: Trajectory, period: float, return_count: int
 ) -> Orbit:
-    """Approximate orbit of the rod in `form` from the last period of the motion `run` of `system`, on its
-    mesh. The orbit starts at the largest y of the tip, and is symmetric if the
+    """Approximate orbit of the rod in `form` from the last period of the motion `run` of `system`; both have
+    the same mesh. The orbit starts at the largest y of the tip, and is symmetric if the
     `relative_bending_moment_asymmetry` of the motion is small.
 
     period: in tau2. return_count: number of returns of the tip to theta = 0 per period. If the rod in `form`
@@ -65,14 +65,14 @@ def orbit_from_motion(
         < NEWTON_FROM_MOTION_SETTINGS.max_asymmetry_of_symmetric_orbit
         else NO_SYMMETRY
     )
-    # A cycle with several returns of the tip needs as many times more intervals.
+    # The number of intervals is proportional to the number of returns of the tip.
     interval_count = (
         NEWTON_FROM_MOTION_SETTINGS.time_intervals_per_return
         * return_count
         // symmetry.solved_parts_per_period
     )
     duration = period / symmetry.solved_parts_per_period
-    times_of_nodes = time_of_largest_y + duration * node_times(
+    times_of_nodes = time_of_largest_y + duration * node_time_fractions(
         interval_count, NEWTON_FROM_MOTION_SETTINGS.collocation_stage_count
     )
     # Times after the end of the run are moved back by one period.
@@ -93,8 +93,8 @@ def relative_bending_moment_asymmetry(system: ExplicitSystem, states: Array) -> 
 
 
 def collocation_states(system: ExplicitSystem, form: StressForm, z: Array) -> Array:
-    """States of the collocation problem `form`, (m, unknowns), from states z of the integrated system, (m,
-    unknowns of the system), on the same mesh."""
+    """States of the collocation problem `form`, (m, unknowns), from states z of `system`, (m, unknowns of the
+    system); both have the same mesh."""
     S = system.stresses(z)
     velocities = np.empty(S.shape)
     G = np.empty((len(S), S.shape[-1]))
@@ -108,7 +108,8 @@ def collocation_states(system: ExplicitSystem, form: StressForm, z: Array) -> Ar
 
 
 def state_with_scaled_deflection(system: ExplicitSystem, z: Array, factor: float) -> Array:
-    """The state z, (unknowns,), with the deflection multiplied by `factor`."""
+    """The state z, (unknowns,), with the deflection multiplied by `factor`, and n1 by its square; z is not
+    changed."""
     scaled = factor * z
     system.layout.stress_field(scaled, "n1")[...] *= factor  # quadratic in the deflection
     return scaled

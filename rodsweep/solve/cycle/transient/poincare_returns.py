@@ -28,8 +28,8 @@ class ReturnSettings:
     stable; z: state. If the norm of the bending and shear components of z is smaller than this number, the
     rod no longer oscillates. Numerical damping governs smaller motions."""
     max_equal_return_distance: float = 0.03
-    """Two returns are equal if their relative distance is at most this number, or twice the smallest
-    distance."""
+    """Two returns are equal if their relative distance is at most this number, or at most twice the smallest
+    distance of the last return from an earlier return."""
     max_returns_per_period: int = 8
     """A cycle is recognised if the tip returns at most this number of times per period."""
     max_steps_per_run: int = 20_000
@@ -106,7 +106,8 @@ def _loses_convexity(system: ExplicitSystem, states: Array) -> bool:
 
 
 def poincare_section_crossings(system: ExplicitSystem, run: Trajectory) -> tuple[Array, Array]:
-    """Returns (times, states), (k,) and (k, unknowns), at which the tip's theta rises through 0 on a run.
+    """Returns (times, states), (k,) and (k, unknowns), at which the tip's theta rises through 0 on a run;
+    times in tau2 from the start of the run.
 
     Between two time steps a run is interpolated by the cubic Hermite polynomial.
     """
@@ -191,8 +192,7 @@ def not_settled_text(
 
 
 def no_period_text(return_count: int, limit_text: str, last_returns: Sequence[tuple[float, Array]]) -> str:
-    """Message on a motion in which no period was found; says so if the motion almost repeats at its last
-    returns.
+    """Message on a motion in which no period was found, with a clause if the last returns almost repeat.
 
     return_count: number of returns of the tip. limit_text: clause on another limit that was reached, or
     empty. last_returns: time and bending moments, (nodes,), of each of the last returns.
@@ -216,8 +216,8 @@ def has_too_few_returns(times: Array) -> bool:
 
 
 def return_count_of_classified_run(is_first: bool, left: int) -> int:
-    """Number of returns of the next run of a motion that is classified after every run. is_first: whether it
-    is the first run. left: number of returns left up to the maximum."""
+    """Number of returns of the next run of a motion that is classified after every run. is_first: whether the
+    next run is the first. left: number of returns left up to the maximum."""
     usual = TRANSIENT_SETTINGS.returns_in_first_run if is_first else TRANSIENT_SETTINGS.returns_per_run
     return _return_count_of_run(usual, left, TRANSIENT_SETTINGS.min_returns_per_run)
 

@@ -9,18 +9,18 @@ from .amplitude_equation import AMPLITUDE_EQUATION_SETTINGS
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TimeSchemeSettings:
-    """Settings for the time schemes of a motion: the default scheme of most motions, the scheme of the first
-    run of a fast-growing motion, and the accurate scheme of motions with a growth per period so small that
-    only an accurate scheme gives its sign, and of motions with a stored path."""
+    """Settings for the time schemes of a motion: the default scheme; the scheme of the first run of a
+    fast-growing motion; the accurate scheme, for motions whose growth per period is so small that only an
+    accurate scheme gives its sign, and for motions with a stored path."""
 
     max_growth_for_accurate_scheme: float = 0.01
-    """Linear growth per period, in modulus, below which the scheme is the accurate one."""
+    """The accurate scheme is used if the modulus of the linear growth per period is below this number."""
 
-    default_scheme_growth_error: float = 1e-3
+    max_default_scheme_growth_error: float = 1e-3
     """Largest growth per period that integration errors of the default scheme and of the
     fast-growth scheme may add; 3e-4 was measured."""
 
-    accurate_scheme_growth_error: float = 1e-5
+    max_accurate_scheme_growth_error: float = 1e-5
     """Largest growth per period that integration errors of the accurate scheme may add; 8e-6 was
     measured."""
 
@@ -47,15 +47,15 @@ TIME_SCHEME_SETTINGS = TimeSchemeSettings()
 
 
 class TransientTimeSchemes(NamedTuple):
-    """Time schemes of the first run and of all later runs of a motion. growth_error_per_period: growth per
-    period that integration errors may add. max_steps_per_return: maximum number of time steps, divided by the
-    allowed number of returns."""
+    """Time schemes of the first run and of all later runs of a motion. allowed_growth_error_per_period:
+    growth per period that integration errors may add. max_steps_per_return: maximum number of time steps,
+    divided by the allowed number of returns."""
 
     first_run: TimeScheme
     """Time scheme of the first run."""
     later_runs: TimeScheme
     """Time scheme of all later runs."""
-    growth_error_per_period: float
+    allowed_growth_error_per_period: float
     max_steps_per_return: int
 
 
@@ -69,14 +69,14 @@ def time_schemes_for_growth(growth: float, is_stored: bool) -> TransientTimeSche
         return TransientTimeSchemes(
             accurate,
             accurate,
-            settings.accurate_scheme_growth_error,
+            settings.max_accurate_scheme_growth_error,
             settings.accurate_scheme_max_steps_per_return,
         )
     default = TimeScheme("arkimex", "4", tolerance=settings.default_scheme_tolerance)
-    # Only the first run starts small and grows; later runs start near the cycle. Its growth is not used, so
-    # that a large tolerance suffices.
+    # Only the first run starts small and grows; later runs start near the cycle. The growth during the first
+    # run is not used, so that a large tolerance suffices.
     is_fast = growth > AMPLITUDE_EQUATION_SETTINGS.max_slow_growth_per_return
     first = replace(default, tolerance=settings.fast_growth_scheme_tolerance) if is_fast else default
     return TransientTimeSchemes(
-        first, default, settings.default_scheme_growth_error, settings.default_scheme_max_steps_per_return
+        first, default, settings.max_default_scheme_growth_error, settings.default_scheme_max_steps_per_return
     )

@@ -17,7 +17,8 @@ class ShapeTraceSettings:
     """Settings for the shapes of a motion that are stored for an animation."""
 
     max_recorded_steps: int = 4000
-    """Maximum number of recorded time steps: some 50 to 100 returns of the tip, or 4 MB."""
+    """Number of recorded time steps from which on no further run is recorded: some 50 to 100 returns of the
+    tip, or 4 MB."""
     max_stored_shapes: int = 1600
     """Maximum number of stored shapes: 50 periods of 32 shapes."""
     max_tip_y_at_rest: float = 2e-3
@@ -43,7 +44,7 @@ class ShapeTrace:
 
     @property
     def is_full(self) -> bool:
-        """Whether the maximum number of time steps is recorded; later steps are ignored."""
+        """Whether so many time steps are recorded that further runs are ignored."""
         return self.step_count >= SHAPE_TRACE_SETTINGS.max_recorded_steps
 
     def needs_more_motion(self, z: Array) -> bool:

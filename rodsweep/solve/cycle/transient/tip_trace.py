@@ -1,8 +1,8 @@
 """Path of the tip from the start of a motion to the end of its integration, interpolated between time steps.
 
 Only position and velocity of the tip are recorded at each time step: six numbers instead of a state of
-several hundred numbers. Cubic interpolation has errors ten times as large as the integrator's where a
-motion decays and its steps grow; quintic interpolation has smaller errors than the integrator.
+several hundred numbers. Cubic interpolation has errors ten times as large as the integrator's where a motion
+decays and the time steps grow; quintic interpolation has smaller errors than the integrator.
 """
 
 import numpy as np
@@ -13,9 +13,9 @@ from ....discretization.explicit_system import ExplicitSystem
 from ...motion.integrator import Trajectory
 
 MAX_TIME_STEP_RATIO_FOR_QUINTIC = 8.0
-"""A time step that is longer than another step at one of its ends by more than this factor is interpolated by
-the cubic polynomial: second derivatives from unequal steps multiply errors of the values by the squared
-factor. The integrator changes a step by a factor of at most 5, except a last step, which ends on time."""
+"""A time step that is more than this number of times as long as a neighbouring step is interpolated by the
+cubic polynomial: second derivatives from unequal steps multiply errors of the values by the squared ratio of
+the steps. The integrator changes a step by a factor of at most 5, except a last step, which ends on time."""
 
 
 class TipTrace:
@@ -119,8 +119,8 @@ def interpolated_between_steps(steps: Array, values: Array, rates: Array, times:
 def _second_derivatives(
     steps: Array, values: Array, rates: Array, step_indices: NDArray[np.integer]
 ) -> Array:
-    """Second derivatives at the times steps[step_indices], (m, used), of the quintic polynomials through
-    values and rates at each of these times and its two neighbours (at an end of the run, the two nearest
+    """Second derivatives at the times steps[step_indices], (m, used). The quintic polynomial for each time
+    has the values and rates at this time and at its two neighbours (at an end of the run, the two nearest
     times).
 
     steps: increasing times, (n,), n >= 3. values, rates: values and time derivatives at these times, (m, n).

@@ -29,7 +29,7 @@ from .transient_integration import TransientIntegration
 class TorusTestSettings:
     """Settings for the test whether a motion lies on a torus."""
 
-    harmonic_count: int = 6
+    second_frequency_harmonic_count: int = 6
     """Number of harmonics of the second frequency in the fitted Fourier series. On the studied tori each
     harmonic was a fifth of the previous harmonic, and the sum of all harmonics beyond the sixth was 6e-4."""
     min_distinct_returns: int = 16
@@ -45,10 +45,10 @@ class TorusTestSettings:
     max_angle_difference_from_multiplier: float = 0.3
     """Largest difference, in rad, between the angle per return on a torus and the argument of the cycle's
     complex multipliers. The difference is 0 at the torus point; 0.18 was observed far from this point."""
-    trial_angles_per_minimum: int = 13
-    """Number of trial angles, before the best angle is refined, within the width of a minimum of the
-    residual, which is 2 pi/k for k returns and one harmonic."""
-    angle_tolerance_ratio: float = 1e-4
+    trial_angles_per_minimum_width: int = 13
+    """Number of trial angles per width of a minimum of the residual, before the best angle is refined. The
+    width is 2 pi/k for k returns and one harmonic."""
+    angle_tolerance_over_half_width: float = 1e-4
     """Tolerance of the fitted angle divided by half the width of the residual's minimum."""
     max_relative_period_difference: float = 0.1
     """Largest relative difference between the mean return time on a torus and the period of the cycle; the
@@ -159,7 +159,7 @@ def torus_frequency_of(return_states: Array, angle: float) -> TorusFrequency | N
         > 2 * np.pi / TORUS_TEST_SETTINGS.min_distinct_returns
     ):
         return None
-    basis = fourier_basis(best_angle * numbers, TORUS_TEST_SETTINGS.harmonic_count)
+    basis = fourier_basis(best_angle * numbers, TORUS_TEST_SETTINGS.second_frequency_harmonic_count)
     # The series is fitted to the first half and tested on the second: a fit alone would explain any motion.
     series = np.linalg.lstsq(basis[:half], first_half, rcond=None)[0]
     return TorusFrequency(
@@ -183,11 +183,13 @@ def fitted_angle_per_return(return_states: Array, angle: float) -> float:
     # With one harmonic the minimum is 2 pi/k wide, with m harmonics 2 pi/(k m); k: number of returns.
     max_difference = TORUS_TEST_SETTINGS.max_angle_difference_from_multiplier
     minimum_width = 2 * np.pi / len(return_states)
-    angle_count = ceil(2 * max_difference / minimum_width * TORUS_TEST_SETTINGS.trial_angles_per_minimum)
+    angle_count = ceil(
+        2 * max_difference / minimum_width * TORUS_TEST_SETTINGS.trial_angles_per_minimum_width
+    )
     trial_angles = angle + np.linspace(-max_difference, max_difference, angle_count + 1)
     best_angle = min(map(float, trial_angles), key=lambda at: residual(at, 1))
     # Every further harmonic narrows the minimum, so the search continues around the last one.
-    for harmonics in range(1, TORUS_TEST_SETTINGS.harmonic_count + 1):
+    for harmonics in range(1, TORUS_TEST_SETTINGS.second_frequency_harmonic_count + 1):
         half_width = np.pi / (len(return_states) * harmonics)
         bounds = (best_angle - half_width, best_angle + half_width)
         minimum = minimize_scalar(
@@ -195,7 +197,7 @@ def fitted_angle_per_return(return_states: Array, angle: float) -> float:
             bounds=bounds,
             args=(harmonics,),
             method="bounded",
-            options={"xatol": TORUS_TEST_SETTINGS.angle_tolerance_ratio * half_width},
+            options={"xatol": TORUS_TEST_SETTINGS.angle_tolerance_over_half_width * half_width},
         )
         best_angle = float(minimum.x)
     return best_angle
@@ -203,7 +205,7 @@ def fitted_angle_per_return(return_states: Array, angle: float) -> float:
 
 def fourier_basis(phases: Array, harmonic_count: int) -> Array:
     """Matrix of Fourier terms at phases, (k,), in rad: 1, cosines and sines of the multiples up to
-    `harmonic_count`, (k, 2 harmonics + 1)."""
+    `harmonic_count`, (k, 2 `harmonic_count` + 1)."""
     multiples = np.outer(phases, np.arange(1, harmonic_count + 1))
     return np.hstack([np.ones((len(phases), 1)), np.cos(multiples), np.sin(multiples)])
 

@@ -2,8 +2,8 @@
 
 The motion is integrated from return to return (`poincare_returns`). Newton's method starts once two returns
 agree to a relative distance of a tenth. Slow motions about the straight rod are shortened by jumps: the state
-is scaled to the amplitude that the amplitude equation predicts (`amplitude_equation`), unless its path is
-stored.
+is scaled to the amplitude that the amplitude equation predicts (`amplitude_equation`), unless the path of the
+motion is stored.
 
 A rod with an unstable straight state leaves this state. The deflection may nevertheless decay while a large
 axial stretch relaxes slowly; the motion then restarts from a small deflection in the leading mode."""
@@ -48,9 +48,9 @@ from .transient_settings import TRANSIENT_SETTINGS
 class TransientIntegration:
     """Integration of the motion of one rod from a start; `integrate_to_outcome` is called only once. form:
     the rod whose cycle is solved for, and the mesh. straight: stability of the straight rod. parameter_name,
-    unstable_cycle: see `CycleSearch`. system: the integrated rod, near a limiting rod of `form` (k1 = inf,
-    ...). record: record of the tip's path or of shapes, or None. returns, steps, jump_count: numbers of
-    returns, time steps and jumps so far."""
+    unstable_cycle: see `CycleSearch`. system: the integrated rod; if the rod of `form` is a limiting rod (k1
+    = inf, ...), a nearby rod. record: record of the tip's path or of shapes, or None. returns, steps,
+    jump_count: numbers of returns, time steps and jumps so far."""
 
     def __init__(
         self,
@@ -73,7 +73,7 @@ class TransientIntegration:
         period = self.leading_mode.period
         schemes = time_schemes_for_growth(rate * period, request.transient > 0)
         self.first_scheme, self.scheme, growth_error, max_steps = schemes
-        self.max_steps = max_steps * max(request.most_periods, TRANSIENT_SETTINGS.min_returns_for_max_steps)
+        self.max_steps = max_steps * max(request.most_periods, TRANSIENT_SETTINGS.min_returns_of_step_limit)
         excess = rate - growth_rate_of_integrated_rod(form.rod, self.system.rod, straight, rate)
         self.amplitude_equation = AmplitudeEquation(period, rate, excess, growth_error)
         self.step = period / TRANSIENT_SETTINGS.first_time_steps_per_period
@@ -115,7 +115,7 @@ class TransientIntegration:
                 outcome, z = self._outcome_or_next_state(run, times, states, is_first)
                 if outcome is not None:
                     return outcome
-        if (cycle := self._cycle_at_slow_limit(z)) is not None:
+        if (cycle := self._cycle_approached_slowly(z)) is not None:
             return self._outcome(*cycle.status_and_message(self.search.accuracy), cycle)
         return self._outcome(CycleStatus.not_settled, self._not_settled_text(z))
 
@@ -143,8 +143,9 @@ class TransientIntegration:
             return None, z
         return self._outcome(*cycle.status_and_message(self.search.accuracy), cycle), z
 
-    def _cycle_at_slow_limit(self, z: Array) -> RefinedCycle | None:
-        """The stable cycle that a slow motion, now at the state z, (unknowns,), approaches; None if none."""
+    def _cycle_approached_slowly(self, z: Array) -> RefinedCycle | None:
+        """The stable cycle that a slow motion, now at the state z, (unknowns,), approaches; None if there is
+        none."""
         factor = self.amplitude_equation.scaling_factor_to_slow_limit(self.past_returns)
         if factor is None or self.record or self.unsolved_message:
             return None
@@ -157,7 +158,8 @@ class TransientIntegration:
         return self._cycle_near(run, float(times[-1] - times[-2]), 1)
 
     def _record_returns(self, run: Trajectory, times: Array, states: Array) -> None:
-        """Counts returns at `times`, (k,), and time steps, and records moments of `states`, (k, unknowns)."""
+        """Counts the returns and time steps of `run`; records the times `times`, (k,), and the bending
+        moments of the states `states`, (k, unknowns), of the returns."""
         self.returns += max(len(times), 1)
         self.steps += len(run.times) - 1
         moments = self.system.layout.stress_field(states, "m3")
@@ -188,9 +190,9 @@ class TransientIntegration:
         return bool(size >= RETURN_SETTINGS.max_state_norm_of_straight_rod)
 
     def _state_after_fast_decay(self, z: Array) -> Array:
-        """The state, (unknowns,), after the fast decay from z, (unknowns,); a record begins at z."""
+        """The state z, (unknowns,), after the decay of its fast components, with which the record begins."""
         period, settings = self.leading_mode.period, INTEGRATOR_SETTINGS
-        shortening = settings.stored_relaxation_shortening if self.record else 1.0
+        shortening = settings.relaxation_shortening_if_stored if self.record else 1.0
         relaxed_state = relax_fast_components(self.system, z, period, shortening)
         if self.record:
             self.elapsed_time = settings.relaxation_duration_over_period * period / shortening
@@ -201,9 +203,9 @@ class TransientIntegration:
         return TransientOutcome(status, text, self.returns, cycle)
 
     def _run_of_returns(self, z: Array, returns: int, first: bool = False) -> Trajectory:
-        """A run from the state z, (unknowns,), over `returns` returns, of at most
-        `max_actual_to_expected_run_duration` times their expected time. first: whether the run is the first
-        of the motion."""
+        """A run from the state z, (unknowns,), over `returns` returns. The run lasts at most
+        `max_actual_to_expected_run_duration` times the expected time of these returns. first: whether the run
+        is the first of the motion."""
         scheme = self.first_scheme if first else self.scheme
         limit = run_limit_by_returns(tip_angle_row(self.system), z, returns)
         # A slow-fast cycle may take many time constants of a leading mode that does not oscillate.
@@ -218,9 +220,9 @@ class TransientIntegration:
         return run
 
     def _cycle_from_returns(self, run: Trajectory) -> RefinedCycle | None:
-        """The stable cycle near the end of a run, if the returns repeat and Newton's method converges;
-        otherwise, or before the next attempt is due, None. After too many failures near a periodic motion,
-        sets `unsolved_message`."""
+        """The stable cycle near the end of a run, if the returns repeat and Newton's method converges; None
+        otherwise, and before the next attempt is due. After too many failures near a periodic motion, sets
+        `unsolved_message`."""
         states = [state for _, state in self.past_returns][-1 - RETURN_SETTINGS.max_returns_per_period :]
         count, distance = returns_per_period_and_distance(states)
         often_failed = self.search.successive_failures >= TRANSIENT_SETTINGS.max_successive_newton_failures
@@ -237,7 +239,8 @@ class TransientIntegration:
 
     def _cycle_near(self, run: Trajectory, period: float, return_count: int) -> RefinedCycle | None:
         """The stable cycle near the end of a run, by Newton's method; None if not found. period: approximate
-        period, in tau2. return_count: number of returns of the tip per period. The run may be shorter."""
+        period, in tau2. return_count: number of returns of the tip per period. The run may be shorter than
+        the period."""
         if run.times[-1] < period:
             start = run.states[-1]
             run = integrator(self.system.mesh, self.scheme).run(self.system, start, period, self.step)

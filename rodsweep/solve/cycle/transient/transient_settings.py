@@ -26,10 +26,10 @@ class TransientSettings:
     """Relative distance between two returns, below which Newton's method starts."""
     return_distance_divisor_per_attempt: int = 10
     """After each attempt of Newton's method, `max_return_distance_for_newton` is divided by this number."""
-    max_return_distance_with_stored_path: float = 1e-3
+    max_newton_return_distance_if_stored: float = 1e-3
     """Upper limit of `max_return_distance_for_newton` for a motion with a stored path, in the first half of
     the allowed returns, so that the path shows how the motion settles."""
-    max_counted_newton_attempts: int = 5
+    max_newton_start_tightenings: int = 5
     """Each attempt of Newton's method, up to this number of attempts, decreases the distance at which
     Newton's method starts, and doubles the number of returns before the next attempt."""
     max_state_jumps: int = 60
@@ -48,7 +48,7 @@ class TransientSettings:
     max_successive_newton_failures: int = 4
     """The integration of a periodic motion ends after this number of successive failures of Newton's method:
     further starts would fail in the same way."""
-    min_returns_for_max_steps: int = 100
+    min_returns_of_step_limit: int = 100
     """The maximum number of time steps is computed for at least this number of returns, because few returns
     may need many time steps."""
 

@@ -28,7 +28,7 @@ from .workspace import (
     SECOND_STAGE,
     NewtonFactors,
     stage_block_index,
-    start_block_index,
+    start_to_stage_block_index,
 )
 
 
@@ -70,7 +70,7 @@ def eliminate_newton_matrix(
             B[stage_block_index(s - 1, s - 1, s)], right_matrices[s - 1], B[INTERVAL_MAP], 1.0, 0.0
         )
         for a in range(2, s - 1):
-            B[start_block_index(a)] = right_matrices[a]
+            B[start_to_stage_block_index(a)] = right_matrices[a]
         reduce_right_sides(B, columns[k], p)
         map_start_to_end(B, columns[k], p, ends)
         # `right_matrices` was computed for x_0 = M^-1, so that B[INTERVAL_MAP] acts on M x_0: M is between

@@ -19,13 +19,13 @@ class InversionSettings(KernelConstants):
     panel_width: int = 12
     """Number of columns of a panel: `invert_matrix` eliminates these columns one by one, then one product
     updates all other columns."""
-    min_pivot_ratio: float = 0.1
+    min_pivot_ratio_without_exchange: float = 0.1
     """A pivot is exchanged for the largest entry of its column if |pivot| is less than this number times this
     entry."""
     rows_in_cache: int = 8
     """Number of rows of all blocks that are updated together, so that these rows fit into the first-level
     cache."""
-    field_ranges: ClassVar = {"min_pivot_ratio": (0.0, 1.0)}
+    field_ranges: ClassVar = {"min_pivot_ratio_without_exchange": (0.0, 1.0)}
     """Exclusive bounds (lower, upper) of settings by name, as in `KernelConstants`."""
 
 
@@ -84,7 +84,7 @@ def _sweep_panel(A: Array, first: int, last: int, pivots: Any) -> None:
             max_entry = max(max_entry, abs(row[i]))
         # Threshold pivoting: an exchange costs a pass over A, and a pivot ten times smaller loses one digit
         # at most.
-        if abs(row[k]) < INVERSION_SETTINGS.min_pivot_ratio * max_entry:
+        if abs(row[k]) < INVERSION_SETTINGS.min_pivot_ratio_without_exchange * max_entry:
             for i in range(k, n):
                 if abs(row[i]) == max_entry:
                     p = i

@@ -1,7 +1,8 @@
 """Newton's matrix at an orbit: Newton's step, derivative along a parameter, and all Floquet multipliers.
 
 After the elimination of the intervals (`elimination`) a system for the state at t = 0 and the period remains.
-Its last row is the phase condition. N: orbit values. K: intervals, s: stages each, n: unknowns of a state.
+Its last row is the phase condition. N: number of orbit values. K: intervals, s: stages each, n: unknowns of a
+state.
 """
 
 from functools import cached_property
@@ -179,8 +180,8 @@ def orbit_increments(
 def reduced_residuals(
     points: Array, duration: float, rod: OrbitEquations, p: OrbitEquations, factors: NewtonFactors
 ) -> tuple[Array, Array]:
-    """Residuals of `points`, (1 + K s, n), with the equations `rod`, reduced by a matrix of a nearby rod `p`.
-    duration: total length of the intervals, in tau2.
+    """Residuals of `points`, (1 + K s, n), with the equations `rod`, reduced by the eliminated matrix
+    `factors` of a nearby orbit with the equations `p`. duration: total length of the intervals, in tau2.
 
     Returns (columns, ends): reduced residuals, (K, s, 1, n), and increment of the state at the end of the
     last interval for a fixed start, (1, n).
@@ -206,8 +207,8 @@ def reduced_stage_residual_variations(
     p: OrbitEquations,
     factors: NewtonFactors,
 ) -> tuple[Array, Array]:
-    """The right-hand sides of `write_right_sides_of_variations` with the equations `rod`, reduced by a matrix
-    of a nearby rod `p`.
+    """The right-hand sides of `write_right_sides_of_variations` with the equations `rod`, reduced by the
+    eliminated matrix `factors` of a nearby orbit with the equations `p`.
 
     Returns (columns, ends): reduced right-hand sides for m `variations`, (K, s, m, n), and increments of
     the state at the end of the last interval for a fixed start, (m, n).

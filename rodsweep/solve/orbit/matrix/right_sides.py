@@ -30,16 +30,16 @@ class ParameterDerivatives(NamedTuple):
 
 @compiled_with_reordered_sums
 def write_rates_of_state(x: Array, F: Array, V: Array, G: Array, p: OrbitEquations) -> None:
-    """Writes the right-hand side of M dx/dt = F(x), (n,), into F, and the velocities and strain rates at the
-    state x, (n,), into V and G, (3, nodes + 1). p: equations of the orbit."""
+    """Writes the right-hand side F(x) of M dx/dt = F(x) at the state x, (n,), into F, (n,), the velocities
+    into V, and the strain rates into G, (3, nodes + 1) each. p: equations of the orbit."""
     write_balance(x, V, G, p.rod, p.node_matrices)
-    _store_stresses(G, F)
+    _copy_to_stress_unknowns(G, F)
     if len(p.rod.unknown_velocity_components):
         write_velocity_residuals(x, F, p.rod, p.node_matrices)
 
 
 @compiled_with_reordered_sums
-def _store_stresses(G: Array, F: Array) -> None:
+def _copy_to_stress_unknowns(G: Array, F: Array) -> None:
     """Copies G, (3, nodes + 1), at all nodes except the tip to the stress unknowns of F, (n,)."""
     d = G.shape[0]
     n = G.shape[1] - 1
@@ -58,7 +58,7 @@ def write_parameter_derivative_of_rates(
     derivatives of the arrays of the rod. p: equations of the orbit.
     """
     write_balance_parameter_derivative(x, V, out, change, p.rod, p.node_matrices)
-    _store_stresses(out[2], F)
+    _copy_to_stress_unknowns(out[2], F)
     d, size = V.shape
     for k in range(len(p.rod.unknown_velocity_components)):
         for i in range(size):
@@ -132,8 +132,8 @@ def write_right_sides(
 def write_right_sides_of_variations(
     values: Array, p: OrbitEquations, partials: ParameterDerivatives, variations: Array, columns: Array
 ) -> None:
-    """Writes the derivatives of the `write_stage_residuals` of an orbit along k variations into `columns`,
-    (K, s, k, n).
+    """Writes the derivatives of the residuals by `write_stage_residuals` along k variations of an orbit into
+    `columns`, (K, s, k, n).
 
     values: values of the orbit, (N,). p: equations of the orbit. variations: variations of the values and of
     the parameter of `partials`, (k, N + 1).

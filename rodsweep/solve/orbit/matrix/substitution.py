@@ -16,7 +16,7 @@ from .workspace import (
     SECOND_STAGE,
     NewtonFactors,
     stage_block_index,
-    start_block_index,
+    start_to_stage_block_index,
 )
 
 
@@ -145,7 +145,7 @@ def _substitute_stage(B: Array, a: int, columns: Array, scaled_increment: Array,
         add_products(B[INTERVAL_MAP], scaled_increment, out[a], 1.0)
         return
     side = columns[a].copy()
-    add_products(B[start_block_index(a)], scaled_increment, side, 1.0)
+    add_products(B[start_to_stage_block_index(a)], scaled_increment, side, 1.0)
     for j in range(a + 1, s):
         add_products(B[stage_block_index(a, j, s)], out[j], side, -1.0)
     add_products(B[stage_block_index(a, a, s)], side, out[a], 1.0)

@@ -22,7 +22,7 @@ from ...unsolvable import MeshLimitReached, WorkLimitReached
 class WorkspaceSettings:
     """Settings for the memory of the matrices of orbits."""
 
-    max_kept_buffer_size: int = 2**23
+    max_kept_buffer_doubles: int = 2**23
     """Largest size of a buffer that is not freed between rods, in double-precision numbers: 64 MB, enough for
     most rods."""
     max_buffer_size: int = 2**28
@@ -59,18 +59,19 @@ def block_count(s: int) -> int:
 
 
 @compiled
-def start_block_index(a: int) -> int:
-    """Number of the block for the effect of the start of the interval on stage a, 2 <= a <= s - 2."""
+def start_to_stage_block_index(a: int) -> int:
+    """Number of the block that contains the effect of the interval's start on stage a, 2 <= a <= s - 2; s:
+    number of stages."""
     return a + 1
 
 
 @compiled
 def stage_block_index(i: int, j: int, s: int) -> int:
-    """Number of the block in row i and column j of the later stages, 2 <= i, j < s. s: stages."""
+    """Number of the block in row i and column j of the later stages, 2 <= i, j < s; s: number of stages."""
     return s + (i - 2) * (s - 2) + j - 2
 
 
-def factors_size(interval_count: int, stage_count: int, unknown_count: int) -> int:
+def factors_size_in_doubles(interval_count: int, stage_count: int, unknown_count: int) -> int:
     """Size of the factors of a Newton matrix, in double-precision numbers. Raises ValueError for too few
     stages, for which compiled code would write beyond the factors."""
     require_enough_stages(stage_count)
@@ -84,9 +85,9 @@ class NewtonFactors(NamedTuple):
     of the pivot blocks of these stages. The blocks `stage_block_index` of later stages are the inverses of
     pivot blocks on the diagonal, row multipliers below, and Schur-updated blocks above. The remaining blocks
     multiply M x_0, x_0: state at the start; `INTERVAL_MAP` gives the increment of the end,
-    `start_block_index(a)` the right-hand side of stage a, 2 <= a <= s - 2. propagator: map P over all
-    intervals, (n, n). closing_matrix_inverse: inverse of the remaining matrix for start and period, (n + 1, n
-    + 1).
+    `start_to_stage_block_index(a)` the right-hand side of stage a, 2 <= a <= s - 2. propagator: map P over
+    all intervals, (n, n). closing_matrix_inverse: inverse of the remaining matrix for start and period, (n +
+    1, n + 1).
     """
 
     eliminated_blocks: Array
@@ -105,8 +106,8 @@ def _empty_from_cache_line(size: int) -> Array:
 class NewtonWorkspace:
     """Buffer for the factors of one Newton matrix at a time; it grows to the largest requested size.
 
-    The workspace also counts the work of the eliminations, K s^2 n^3 for K intervals of s stages with n
-    unknowns, which is proportional to their computing time on every machine."""
+    The workspace also counts the work of the eliminations: K s^2 n^3 multiplications for K intervals of s
+    stages with n unknowns. The work is proportional to the computing time on every machine."""
 
     def __init__(self) -> None:
         self._buffer: Array = np.empty(0)
@@ -177,11 +178,11 @@ class NewtonWorkspace:
 
     def release(self) -> None:
         """Ends the last reservation and the limit of the work, and frees the buffer if it is larger than
-        WORKSPACE_SETTINGS.max_kept_buffer_size."""
+        WORKSPACE_SETTINGS.max_kept_buffer_doubles."""
         # A matrix that still holds the last reservation can no longer be used.
         self._reservation += 1
         self.limit_work(inf)
-        if len(self._buffer) > WORKSPACE_SETTINGS.max_kept_buffer_size:
+        if len(self._buffer) > WORKSPACE_SETTINGS.max_kept_buffer_doubles:
             self._buffer = np.empty(0)
 
 
@@ -194,7 +195,7 @@ class FactorStorage:
     ) -> None:
         self.workspace = workspace
         self._shape = (interval_count, block_count(stage_count), unknown_count, unknown_count)
-        self._size = factors_size(interval_count, stage_count, unknown_count)
+        self._size = factors_size_in_doubles(interval_count, stage_count, unknown_count)
         # Work is counted first: a matrix beyond the limit must not end the last reservation.
         workspace.count_matrix_work_within_limit(
             float(interval_count * stage_count**2) * float(unknown_count) ** 3

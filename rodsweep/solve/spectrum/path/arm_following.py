@@ -17,7 +17,7 @@ from ....determinant.arm.completeness import (
     COMPLETENESS_SETTINGS,
     points_right_of_hull,
     proves_completeness,
-    remainder_of_sum,
+    sum_over_unknown_eigenvalues,
 )
 from ....determinant.arm.family_values import write_propagators
 from ....determinant.arm.hull.region import EigenvalueHull, PathHulls, hull_at
@@ -32,7 +32,7 @@ from .eigenvalue_following import (
     CorrectedEigenvalue,
     are_distinct_roots,
     converged_error,
-    curvature_estimate,
+    eigenvalue_crowding_estimate,
     eigenvalue_newton_step,
     store_root,
 )
@@ -44,9 +44,9 @@ class ArmFollowingSettings:
     """Settings for arms along a path: number of followed modes, families of interpolated arms, hulls."""
 
     further_mode_counts: tuple[int, ...] = (3, 9)
-    """Numbers of modes followed in addition to the wanted modes. The second number is tried if, with the
-    first number, fewer than `min_proved_fraction_without_more_modes` of the points are proved or too few
-    growing modes."""
+    """Numbers of modes followed in addition to the wanted modes. The second number is tried if the first
+    number proves a smaller fraction of the points than `min_proved_fraction_without_more_modes`, or is too
+    small to prove all growing modes complete."""
     min_proved_fraction_without_more_modes: float = 0.5
     """More modes are followed if the modes are proved complete at less than this fraction of the points, no
     counts follow, and more modes would prove a further point."""
@@ -59,8 +59,8 @@ class ArmFollowingSettings:
     """The propagators of a new family are valid at least up to W = `family_W_over_max_abs_eigenvalue` *
     (largest |w| at the first point)."""
     min_reused_W_over_max_w: float = 1.25
-    """The family of the previous interval is used again if its W is at least this multiple of the largest |w|
-    at the first point of the new interval."""
+    """The family of the previous interval is used again if its W is at least this number times the largest
+    |w| at the first point of the new interval."""
     max_points_over_previous_family: int = 2
     """Maximum number of points of a new family, divided by the number reached with the previous family."""
     min_family_points: int = 4
@@ -82,7 +82,7 @@ ARM_FOLLOWING_SETTINGS = ArmFollowingSettings()
 
 PropagatorsWithPathSlopes = tuple[float, Array, Array, Array]
 """(bound W of |w|, propagators valid for |w| <= W, derivatives of the propagators with respect to the path
-variable p, sizes of their entries); the first two arrays: (elements, terms, PADDED_LENGTH), the third as
+variable p, sizes of their entries); the first two arrays: (elements, terms, PROPAGATOR_LENGTH), the third as
 `ArmFamily.reference_entry_sizes`."""
 
 
@@ -113,7 +113,7 @@ def _converged_step_and_error(
                 error_of_D = error_from_interpolated_propagators(
                     step.w, level[0], level[1], step.log_scale, level[3]
                 )
-                error = max(error, error_of_D / step.D_slope)
+                error = max(error, error_of_D / step.D_slope_modulus_before_step)
             return step, error
         step = newton_step_of_arm_eigenvalue(step.w, level)
     return step, math.inf
@@ -137,8 +137,8 @@ def _refine_all_eigenvalues(
     track: FollowedEigenvalues, i: int, guess: Complex, modes: int, level: PropagatorsWithPathSlopes
 ) -> bool:
     """Refines the guesses for all eigenvalues of point i and writes the eigenvalues to the track. guess:
-    (m,). The `modes` leading eigenvalues converge to rounding error. level: propagators of the arm. Returns
-    True if all eigenvalues converged, no two coincide, and every complex pair stayed complex."""
+    (m,). The `modes` + 1 leading eigenvalues converge to rounding error. level: propagators of the arm.
+    Returns True if all eigenvalues converged, no two coincide, and every complex pair stayed complex."""
     w = track.w[i]
     error = track.error[i]
     order = track.descending_order[i]
@@ -157,7 +157,9 @@ def _refine_all_eigenvalues(
             w[k] = first.w
             if conjugate_index[k] >= 0:
                 w[conjugate_index[k]] = w[k].conjugate()
-            last, error[k] = _converged_step_and_error(first, curvature_estimate(w, k), rank <= modes, level)
+            last, error[k] = _converged_step_and_error(
+                first, eigenvalue_crowding_estimate(w, k), rank <= modes, level
+            )
             if not store_root(track, i, k, conjugate_index[k], last):
                 return False
     # The refinement may have changed the order.
@@ -172,8 +174,8 @@ def proved_count_right_of_line(
     """Number of leading eigenvalues of point i that are proved to be all eigenvalues to the right of a line;
     0 without a proof.
 
-    The line lies at Re w <= 0, to the left of the leading `modes`, so that the proof includes all unstable
-    eigenvalues. hull: region that contains the spectrum. level: propagators of the arm.
+    The line lies at Re w <= 0, to the left of the `modes` leading eigenvalues, so that the proof includes all
+    unstable eigenvalues. hull: region that contains the spectrum. level: propagators of the arm.
     """
     w = track.w[i]
     error = track.error[i]
@@ -193,7 +195,9 @@ def proved_count_right_of_line(
         points = points_right_of_hull(line, hull.a, hull.c, point_count)
         if len(points) == 0 or points[-1] > level[0]:
             continue
-        if proves_completeness(remainder_of_sum(line, w, error, hull, points, (level[0], level[1]))):
+        if proves_completeness(
+            sum_over_unknown_eigenvalues(line, w, error, hull, points, (level[0], level[1]))
+        ):
             return count
     return 0
 
@@ -212,9 +216,10 @@ def follow_eigenvalues_of_arms(
 
     track: `w` and `descending_order` of the first point are given, the remaining points are filled. family:
     family of arms that contains all p. hulls: regions that contain the spectra of all arms of the family.
-    proved_counts: output, the number from `proved_count_right_of_line` at each point, (points,).
+    modes: number of requested modes. proved_counts: output, the number from `proved_count_right_of_line` at
+    each point, (points,).
     """
-    shape = family.coefficients.shape[1:]
+    shape = family.chebyshev_coefficients.shape[1:]
     polynomials = np.empty(shape)
     changes = np.empty(shape)
     level = (family.largest_w, polynomials, changes, family.reference_entry_sizes)

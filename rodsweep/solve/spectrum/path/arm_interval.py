@@ -25,7 +25,7 @@ from ....determinant.arm.determinant import arm_determinant
 from ....determinant.arm.hull.hull import hulls_along
 from ....determinant.arm.hull.region import PathHulls, hull_at
 from ....determinant.parameter_path import ParameterPath
-from ....determinant.roots.roots import Roots
+from ....determinant.roots.roots import RootsOfD
 from ...backend.solver_pools import destroy_pooled_solvers
 from ...point_outcome import FAILURE_EXCEPTIONS
 from ..candidates import line_for_proof
@@ -68,14 +68,14 @@ def follow_interval(
     if no family is found, or if n is below `ARM_FOLLOWING_SETTINGS.min_family_points`.
 
     If not all growing modes can be proved complete, more eigenvalues are followed; also if too few points are
-    proved complete, unless counts follow at these points. previous: the previous interval of the path, whose
-    family is used again if it contains enough of the points p.
+    proved complete, unless counts at these points follow (`counts_follow`). previous: the previous interval
+    of the path, whose family is used again if it contains enough of the points p.
     """
     best: ArmInterval | None = None
     if len(p) < ARM_FOLLOWING_SETTINGS.min_family_points:
         return None
     for added_modes in ARM_FOLLOWING_SETTINGS.further_mode_counts:
-        # What the last interval needed, this one will need too, so fewer modes are not tried.
+        # This interval will need as many modes as the previous interval, so fewer modes are not tried.
         if previous is not None and added_modes < previous.further_mode_count:
             continue
         if best is not None and not (
@@ -104,8 +104,8 @@ def _follows_too_few_to_prove_growing(interval: ArmInterval) -> bool:
 
 
 def _is_better_interval(interval: ArmInterval, other: ArmInterval, mode_count: int) -> bool:
-    """Whether `interval` has more proved points than `other`, or as many and `other` follows too few
-    modes."""
+    """Whether `interval` has more points with `mode_count` proved modes than `other`, or as many if `other`
+    follows too few modes."""
     proved = interval.proved_point_count(mode_count)
     other_proved = other.proved_point_count(mode_count)
     return proved > other_proved or (proved == other_proved and _follows_too_few_to_prove_growing(other))
@@ -199,16 +199,17 @@ def arm_family_and_hulls(
             * float(first_eigenvalues[mode_count - 1].real),
             0.0,
         )
-        family = arm_family_with_proofs(path, hulls, W, line)
+        family = arm_family_for_proofs(path, hulls, W, line)
     except (ValueError, FloatingPointError):
         return None
     return None if family is None else (family, hulls)
 
 
-def arm_family_with_proofs(path: ParameterPath, hulls: PathHulls, W: float, line: float) -> ArmFamily | None:
-    """The family of all arms of `hulls`, for |w| <= W and for the proofs without a count of its worst arm, if
-    these need hardly larger |w|; None if the arms are not smooth in p. line: Re w of the line of the proofs.
-    Raises ValueError at a p without a valid arm, and FloatingPointError if no elements resolve an arm."""
+def arm_family_for_proofs(path: ParameterPath, hulls: PathHulls, W: float, line: float) -> ArmFamily | None:
+    """The family of all arms of `hulls`, valid for |w| <= W; if a proof without a count, at the arm with the
+    largest hull, needs a larger |w|, of at most `family_W_over_max_abs_eigenvalue` * W, the family is valid
+    up to this |w|. None if the arms are not smooth in p. line: Re w of the line of the proofs. Raises
+    ValueError at a p without a valid arm, and FloatingPointError if no elements resolve an arm."""
     largest_hull = max(zip(list_of(hulls.a), list_of(hulls.c), strict=True))
     proof_w = [
         points[-1]
@@ -222,8 +223,8 @@ def arm_family_with_proofs(path: ParameterPath, hulls: PathHulls, W: float, line
 def _eigenvalues_of_previous_interval(
     previous: ArmInterval | None, p: float, request: SpectrumRequest, added_mode_count: int
 ) -> Complex | None:
-    """Eigenvalues, (m,), at p, from the previous interval `previous`; None unless p is the last point of this
-    interval, `added_mode_count` modes were followed there, and all its points are proved complete."""
+    """Eigenvalues, (m,), at p, from the interval `previous`; None unless p is the last point of this
+    interval, `added_mode_count` further modes were followed there, and all its points are proved complete."""
     if previous is None or previous.further_mode_count != added_mode_count or previous.p[-1] != p:
         return None
     if previous.proved_point_count(request.mode_count) < len(previous.p):
@@ -233,7 +234,7 @@ def _eigenvalues_of_previous_interval(
 
 def _leading_roots(
     path: ParameterPath, p: float, request: SpectrumRequest, added_mode_count: int
-) -> Roots | None:
+) -> RootsOfD | None:
     """The leading eigenvalues at path variable p, without a proof: the wanted modes and `added_mode_count`
     more modes; None if the solve fails."""
     try:

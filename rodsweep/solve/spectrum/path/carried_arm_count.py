@@ -1,7 +1,7 @@
 """Counts of eigenvalues right of a line: at one arm of an interval, and carried along its arms.
 
-A count at one arm confirms that all eigenvalues right of a line are followed eigenvalues. They remain all, at
-all further arms, as long as no unknown eigenvalue lies on the line
+A count at one arm confirms that all eigenvalues right of a line are followed eigenvalues. This remains true
+at further arms as long as no unknown eigenvalue lies on the line
 (`rodsweep.determinant.arm.count.no_crossing`). A second count, at the last arm, must confirm the result.
 """
 
@@ -15,7 +15,7 @@ from ....determinant.arm.count.count import count_right_of
 from ....determinant.arm.count.no_crossing import proves_no_crossing_of_arms, sampled_point_indices
 from ....determinant.arm.count.settings import NO_CROSSING_SETTINGS
 from ....determinant.arm.determinant import ArmDeterminant
-from ....determinant.arm.family_values import propagators_at
+from ....determinant.arm.family_values import W_and_propagators_at
 from ....determinant.arm.hull.region import hull_at
 from ....determinant.parameter_path import ParameterPath
 from ..candidates import lines_for_count
@@ -24,12 +24,13 @@ from .carried_count import leading_eigenvalues_of_track
 from .eigenvalue_prediction import FollowedEigenvalues
 
 
-def confirmed_count_at(
+def confirmed_mode_count_at(
     path: ParameterPath, interval: ArmInterval, p: float, mode_count: int, point_track: FollowedEigenvalues
 ) -> int:
     """Number of eigenvalues at path variable p that are confirmed by a count to be all eigenvalues to the
-    right of a line; 0 if no count confirms this. interval: an interval that contains p. point_track: a track
-    with the eigenvalues at p only."""
+    right of a line; 0 if no count confirms this. interval: an interval that contains p. mode_count: number of
+    requested modes, which lie to the right of the line. point_track: a track with the eigenvalues at p
+    only."""
     w, error = leading_eigenvalues_of_track(point_track, point_track.w.shape[1])
     line = confirmed_line(path, interval, p, (w[0], error[0]), mode_count)
     return 0 if line is None else int((w[0].real > line).sum())
@@ -52,7 +53,7 @@ def confirmed_line(
     w, error = eigenvalues_and_errors
     if w[-1].real > 0:  # more modes grow, and the count would include them
         return None
-    determinant = ArmDeterminant(path.rod_at(p), propagators_at(interval.arm_family, p))
+    determinant = ArmDeterminant(path.rod_at(p), W_and_propagators_at(interval.arm_family, p))
     hull = hull_at(interval.hulls, p)
     lines = [line for line in lines_for_count(list_of(w), mode_count) if line <= rightmost]
     for line in [*lines, rightmost] if rightmost < math.inf else lines:
@@ -67,7 +68,7 @@ class ArmCountCarrier:
     """Carries counts along the arms of an interval, to fill `proved_counts` at points without a proof. modes:
     number of requested modes. w, error: followed eigenvalues by descending real part, and their errors,
     (points, m). lines: real part, at each point, of the rightmost line to the left of all requested
-    eigenvalues, (points,)."""
+    eigenvalues and of the imaginary axis, (points,)."""
 
     def __init__(self, path: ParameterPath, interval: ArmInterval, mode_count: int):
         self.path = path
@@ -75,7 +76,7 @@ class ArmCountCarrier:
         self.modes = mode_count
         self.w, self.error = leading_eigenvalues_of_track(interval.track, interval.track.w.shape[1])
         last = self.w[:, mode_count - 1]
-        # Left of the axis, so that the count also tells the number of unstable modes.
+        # Left of the axis, so that the count also gives the number of unstable modes.
         self.lines = np.minimum(last.real, 0.0) - NO_CROSSING_SETTINGS.line_distance_over_last_w * np.abs(
             last
         )
@@ -89,7 +90,7 @@ class ArmCountCarrier:
             end = first + len(run)
             skipped_count = 1
             while end - first >= NO_CROSSING_SETTINGS.arm_count:
-                points, lines = self._carried_points(first, end - 1)
+                points, lines = self._carried_points_and_lines(first, end - 1)
                 if not lines:
                     # Further points often fail, too, so every further failure skips twice as many points.
                     first += skipped_count
@@ -101,7 +102,7 @@ class ArmCountCarrier:
                 first = points[-1] + 1
                 skipped_count = 1
 
-    def _carried_points(self, index: int, last_index: int) -> tuple[list[int], list[float]]:
+    def _carried_points_and_lines(self, index: int, last_index: int) -> tuple[list[int], list[float]]:
         """Returns (points, lines). points: indices of the points, from `index` to at most `last_index`, from
         each of which the count is carried to the next. lines: real parts; no unknown eigenvalue crosses
         lines[k] between points[k] and points[k + 1]; empty if the count cannot be carried from `index`."""
@@ -140,7 +141,8 @@ class ArmCountCarrier:
         return confirmed_line(self.path, self.interval, p, (self.w[i], self.error[i]), self.modes, line)
 
     def _is_line_free_of_unknown_eigenvalues(self, line: float, first: int, last: int) -> bool:
-        """Whether no unknown eigenvalue lies on a line, for any arm between two points of the interval."""
+        """Whether no unknown eigenvalue lies on the line at Re w = `line`, for any arm between the points
+        with the indices `first` and `last`."""
         interval = self.interval
         points = sampled_point_indices(first, last)
         known_w = interval.track.w[points], interval.track.error[points]

@@ -1,9 +1,9 @@
 """A count of eigenvalues carried along a path, as long as a proof with a moving line succeeds.
 
-At the first point it is proved that the leading followed eigenvalues, up to one of them, are all eigenvalues
-to the right of a line. A line in a gap between followed eigenvalues is moved, with the gap, to another point.
-If no eigenvalue crosses the moving line (`rodsweep.determinant.moving_line`), the number of eigenvalues to
-the right of the line is the same at every point between.
+At the first point it is proved that some number of leading followed eigenvalues are all eigenvalues to the
+right of a line. A line in a gap between followed eigenvalues is moved, with the gap, to another point. If no
+eigenvalue crosses the moving line (`rodsweep.determinant.moving_line`), the number of eigenvalues to the
+right of the line is the same at every point between.
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....arrays import Array, Complex
-from ....determinant.moving_line import IntervalEnd, proves_no_crossing
+from ....determinant.moving_line import RodAndLineAtEnd, no_crossing_proof_and_count
 from ....determinant.roots.settings import ROOT_SETTINGS
 from ....model.compiled.compilation import compiled
 from ....model.compiled.kernel_constants import KernelConstants
@@ -25,7 +25,7 @@ class CarriedCountSettings(KernelConstants):
     """Settings for a count of eigenvalues that is carried from rod to rod along a path: number of rectangles
     of a proof, and gaps in which the line of a count may lie."""
 
-    base_rectangle_count: int = 60
+    rectangle_allowance_per_proof: int = 60
     """The number of rectangles (`moving_line`) of one proof is at most this number plus
     `rectangles_per_point` times the number of points covered."""
     rectangles_per_point: int = 20
@@ -58,7 +58,7 @@ def line_and_relative_half_gap(track: FollowedEigenvalues, i: int, gap: int) -> 
 @compiled
 def count_right_of_widest_gap(track: FollowedEigenvalues, i: int, modes: int) -> int:
     """Number of eigenvalues to the right of the widest gap at point i; 0 if no gap is wide enough. The gap
-    lies to the left of the leading `modes` and of the imaginary axis."""
+    lies to the left of the `modes` leading eigenvalues and of the imaginary axis."""
     best_gap = 0
     max_width = CARRIED_COUNT_SETTINGS.min_relative_half_gap
     for gap in range(modes, track.w.shape[1]):
@@ -74,8 +74,9 @@ def _does_gap_stay_open(
     track: FollowedEigenvalues, ends: tuple[int, int], gap: int, lines: tuple[float, float], p: Array
 ) -> bool:
     """Whether exactly the leading `gap` eigenvalues lie to the right of a moving line at every point between
-    two points. ends: indices of the two points. lines: real parts of the line at the two points. The distance
-    of each eigenvalue from the line must exceed twice the eigenvalue's error."""
+    two points. ends: indices of the two points. lines: real parts of the line at the two points. p: path
+    variables, (points,). The distance of each eigenvalue from the line must exceed twice the eigenvalue's
+    error."""
     i, j = ends
     for s in range(i, j + 1):
         fraction = (p[s] - p[i]) / (p[j] - p[i])
@@ -108,18 +109,20 @@ def _count_right_of_widest_open_gap(
 
 
 @compiled
-def _line_interval_end(
+def _interval_end_with_line_in_gap(
     track: FollowedEigenvalues, i: int, gap: int, p: Array, coefficients: Array
-) -> IntervalEnd:
+) -> RodAndLineAtEnd:
     """End, at point i of a path, of an interval over which a vertical line moves; at point i the line lies in
-    the middle of a gap. gap: number of eigenvalues to the right of the gap. p: (points,). coefficients:
-    (points, 4)."""
+    the middle of a gap. gap: number of eigenvalues to the right of the gap. p: path variables, (points,).
+    coefficients: (F, nu, c2, gamma3) at each point, (points, 4)."""
     F, nu, c2, gamma3 = coefficients[i]
-    return IntervalEnd(p[i], Coefficients(F, nu, c2, gamma3), line_and_relative_half_gap(track, i, gap)[0])
+    return RodAndLineAtEnd(
+        p[i], Coefficients(F, nu, c2, gamma3), line_and_relative_half_gap(track, i, gap)[0]
+    )
 
 
 @compiled
-def carry_count(
+def last_point_with_carried_count(
     track: FollowedEigenvalues,
     coefficients: Array,
     p: Array,
@@ -130,8 +133,9 @@ def carry_count(
     """Index of the last point to which the count at the first point can be carried.
 
     coefficients: (F, nu, c2, gamma3) at each point, (points, 4). p: path variables, (points,). direction:
-    d(F, nu, c2, gamma3)/dp. proved_counts: number of leading eigenvalues that are all eigenvalues to the
-    right of a line, (points,); given at the first point, filled up to the last point reached.
+    d(F, nu, c2, gamma3)/dp. modes: number of requested modes, to the left of which every line lies.
+    proved_counts: number of leading eigenvalues that are all eigenvalues to the right of a line, (points,);
+    given at the first point, filled up to the last point reached.
     """
     i = 0
     last = len(p) - 1
@@ -141,13 +145,13 @@ def carry_count(
         gap = _count_right_of_widest_open_gap(track, (i, j), modes, proved_counts[i], p)
         proved = False
         if gap > 0:
-            first = _line_interval_end(track, i, gap, p, coefficients)
-            end = _line_interval_end(track, j, gap, p, coefficients)
+            first = _interval_end_with_line_in_gap(track, i, gap, p, coefficients)
+            end = _interval_end_with_line_in_gap(track, j, gap, p, coefficients)
             most = (
-                CARRIED_COUNT_SETTINGS.base_rectangle_count
+                CARRIED_COUNT_SETTINGS.rectangle_allowance_per_proof
                 + CARRIED_COUNT_SETTINGS.rectangles_per_point * (j - i)
             )
-            proved, _ = proves_no_crossing(first, end, direction, most)
+            proved, _ = no_crossing_proof_and_count(first, end, direction, most)
         if proved:
             # The number of eigenvalues to the right of this gap is proved, even if the proved number was
             # larger before.
@@ -167,7 +171,8 @@ def certified_points_and_unstable_counts(
     track: FollowedEigenvalues, proved_counts: NDArray, modes: int, accuracy: float
 ) -> tuple[NDArray, NDArray]:
     """Returns (is_good, unstable_counts), (points,) each. is_good: whether the point is certified and its
-    leading `modes` are accurate. unstable_counts: number of unstable modes.
+    leading `modes` eigenvalues have the relative accuracy `accuracy`. unstable_counts: number of unstable
+    modes.
 
     proved_counts: number of leading eigenvalues proved complete at each point, (points,). A point is not good
     if an eigenvalue may lie on the imaginary axis, or if a nearly double eigenvalue has lost digits.

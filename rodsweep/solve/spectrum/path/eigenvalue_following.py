@@ -32,7 +32,7 @@ class EigenvalueFollowingSettings(KernelConstants):
     """Maximum number of Newton steps for one eigenvalue."""
     accuracy_beyond_leading_modes: float = 1e-9
     """Relative accuracy of eigenvalues beyond the leading modes, used only to place the line of a count."""
-    curvature_safety_factor: float = 4.0
+    D_curvature_safety_factor: float = 4.0
     """Safety factor on |D''/(2 D')|: the modulus of the sum of 1/(w - w_j) over all other roots w_j,
     estimated from the followed roots alone."""
     final_step_over_rounding: float = 4.0
@@ -44,7 +44,7 @@ EIGENVALUE_FOLLOWING_SETTINGS = EigenvalueFollowingSettings()
 
 class CorrectedEigenvalue(NamedTuple):
     """An eigenvalue w after one Newton step: slope dw/dp, length of the step, and rounding error of w.
-    D_slope: |dD/dw| exp(-S) before the step, S = `log_scale`."""
+    D_slope_modulus_before_step: |dD/dw| exp(-S) before the step, S = `log_scale`."""
 
     w: complex
     slope: complex
@@ -52,7 +52,7 @@ class CorrectedEigenvalue(NamedTuple):
     """Modulus of the Newton step, in 1/tau2."""
     rounding_error: float
     """Absolute rounding error of w, in 1/tau2."""
-    D_slope: float
+    D_slope_modulus_before_step: float
     log_scale: float
 
 
@@ -60,7 +60,8 @@ class CorrectedEigenvalue(NamedTuple):
 def newton_step_of_uniform_eigenvalue(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> CorrectedEigenvalue:
-    """One Newton step for a root of D from w; a real w stays real. direction: d(F, nu, c2, gamma3)/dp."""
+    """One Newton step for a root of D from w; a real w stays real. coefficients: (F, nu, c2, gamma3) of the
+    rod. direction: d(F, nu, c2, gamma3)/dp."""
     value = determinant_value_on_path(w, coefficients, direction)
     return eigenvalue_newton_step(
         w, value, DETERMINANT_SETTINGS.typical_rounding_error_over_bound * value.rounding_error
@@ -84,13 +85,13 @@ def eigenvalue_newton_step(w: complex, value: PathDeterminantValue, rounding: fl
 
 
 @compiled
-def curvature_estimate(w: Complex, k: int) -> float:
+def eigenvalue_crowding_estimate(w: Complex, k: int) -> float:
     """Upper estimate of |D''/(2 D')| at root w[k], from the distances to 0 and to the other roots w, (m,)."""
     total = 1 / abs(w[k])
     for j in range(len(w)):
         if j != k:
             total += 1 / abs(w[k] - w[j])
-    return EIGENVALUE_FOLLOWING_SETTINGS.curvature_safety_factor * total
+    return EIGENVALUE_FOLLOWING_SETTINGS.D_curvature_safety_factor * total
 
 
 @compiled
@@ -150,7 +151,12 @@ def _iterate_to_convergence(
             if exact and step.rounding_error > ROOT_SETTINGS.min_ill_conditioned_relative_error * abs(step.w):
                 error = min(crowding * step.step_length * step.step_length, step.step_length)
                 error_of_D = rounding_error_at_root(step.w, rod, step.log_scale)
-                error = max(error, ROOT_SETTINGS.rounding_bound_fraction_at_root * error_of_D / step.D_slope)
+                error = max(
+                    error,
+                    ROOT_SETTINGS.rounding_bound_fraction_at_root
+                    * error_of_D
+                    / step.D_slope_modulus_before_step,
+                )
             return step, error
         step = newton_step_of_uniform_eigenvalue(step.w, rod, direction)
     return step, math.inf
@@ -177,8 +183,8 @@ def are_distinct_roots(w: Complex, error: Array) -> bool:
 def _refine_all_eigenvalues(
     track: FollowedEigenvalues, i: int, guess: Complex, modes: int, rod: Coefficients, direction: Coefficients
 ) -> bool:
-    """Refines the guesses `guess` for all eigenvalues of point i, (m,), and writes the eigenvalues to the
-    track; the `modes` leading eigenvalues converge to rounding error. Returns True if all eigenvalues
+    """Refines the guesses `guess`, (m,), for all eigenvalues of point i, and writes the eigenvalues to the
+    track; the `modes` + 1 leading eigenvalues converge to rounding error. Returns True if all eigenvalues
     converged, no two coincide, and every complex pair stayed complex."""
     w = track.w[i]
     error = track.error[i]
@@ -202,7 +208,7 @@ def _refine_all_eigenvalues(
         k = order[rank]
         if guess[k].imag >= 0:
             last, error[k] = _iterate_to_convergence(
-                first[k], curvature_estimate(w, k), rank <= modes, rod, direction
+                first[k], eigenvalue_crowding_estimate(w, k), rank <= modes, rod, direction
             )
             if not store_root(track, i, k, conjugate[k], last):
                 return False
@@ -220,7 +226,7 @@ def follow_eigenvalues(
 
     track: `w` and `descending_order` of the first point are given, the remaining points are filled.
     coefficients: (F, nu, c2, gamma3) at each point, (points, 4). direction: d(F, nu, c2, gamma3)/dp. The
-    leading `modes` eigenvalues converge to rounding error.
+    `modes` + 1 leading eigenvalues converge to rounding error.
     """
     guess = track.w[0].copy()
     partner = np.empty(len(guess), np.int64)

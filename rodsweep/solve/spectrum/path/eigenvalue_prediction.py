@@ -36,8 +36,8 @@ EIGENVALUE_PREDICTION_SETTINGS = EigenvaluePredictionSettings()
 
 class FollowedEigenvalues(NamedTuple):
     """Track of m eigenvalues along the points of a path: eigenvalues w, their slopes dw/dp and absolute
-    errors, (points, m) each. descending_order: their indices at each point by descending real part, then
-    descending frequency, (points, m)."""
+    errors, (points, m) each. descending_order: indices of the eigenvalues at each point by descending real
+    part, then descending frequency, (points, m)."""
 
     w: Complex
     slope: Complex
@@ -90,7 +90,8 @@ def find_conjugates(w: Complex, conjugate: NDArray) -> None:
 @compiled
 def _pair_meeting_eigenvalues(w: Complex, slope: Complex, step: float, partner: NDArray) -> None:
     """Pairs real eigenvalues that are about to meet, the earliest meeting first: writes the index of each
-    eigenvalue's partner into `partner`, (m,). w, slope: eigenvalues and dw/dp, (m,). step: change of p."""
+    eigenvalue's partner into `partner`, (m,), whose entries are -1 for eigenvalues without a partner. w,
+    slope: eigenvalues and dw/dp, (m,). step: change of p."""
     while True:
         min_steps = EIGENVALUE_PREDICTION_SETTINGS.max_steps_to_meeting
         a = -1

@@ -12,7 +12,7 @@ from ..spectrum import Spectrum, SpectrumRequest
 from ..status import SpectrumStatus
 from .arm_following import ARM_FOLLOWING_SETTINGS, follow_eigenvalues_of_arms
 from .arm_interval import ArmInterval, follow_interval
-from .carried_arm_count import confirmed_count_at
+from .carried_arm_count import confirmed_mode_count_at
 from .carried_count import certified_points_and_unstable_counts, leading_eigenvalues_of_track
 from .eigenvalue_prediction import FollowedEigenvalues, KnownRoots, new_track, slice_track
 
@@ -117,7 +117,7 @@ class FollowedArms:
             for number in sorted({requested, mode_count}, reverse=True):
                 if proved_count < number:
                     proved_count = max(
-                        proved_count, confirmed_count_at(self.path, interval, p, number, track)
+                        proved_count, confirmed_mode_count_at(self.path, interval, p, number, track)
                     )
             yield ProvedEigenvalues(max(mode_count, min(proved_count, requested)), track, proved_count)
             if proved_count >= mode_count:

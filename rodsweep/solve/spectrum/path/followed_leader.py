@@ -66,7 +66,8 @@ def follow_leader_in_range(
 ) -> LeadingEigenvalue | None:
     """The result of `follow_leading_eigenvalue` for a nonuniform arm of a chain, from propagators
     interpolated over a range of arms; None also outside the range. guesses: eigenvalues of the previous arm,
-    (n,), as there. parameter_name: the varied parameter."""
+    (n,), as in `follow_leading_eigenvalue`. accuracy: largest relative error. parameter_name: the varied
+    parameter."""
     roots = leader_in_range(rod, parameter_name, arm_range, guesses)
     if roots is None:
         return None
@@ -102,7 +103,7 @@ def _follow_leader_of_arm(rod: Rod, guesses: Complex, accuracy: float) -> Leadin
     if not isfinite(largest_w):
         largest_w = largest_w_of_count(next(_lines_for_count(guess)), determinant, hull)
     determinant.propagators_for(largest_w)  # the elements for the proof also serve the eigenvalues
-    w, error = _refined_eigenvalues(guesses, determinant, accuracy)
+    w, error = _refined_eigenvalues_and_errors(guesses, determinant, accuracy)
     # Another followed eigenvalue may have taken the lead on the way from the neighbour.
     order = np.argsort(-w.real, kind="stable")
     w = w[order]
@@ -125,7 +126,7 @@ def _follow_leader_of_arm(rod: Rod, guesses: Complex, accuracy: float) -> Leadin
     return LeadingEigenvalue(leading_w, float(error[0]), w, is_proved_by_count=not is_complete)
 
 
-def _refined_eigenvalues(
+def _refined_eigenvalues_and_errors(
     guesses: Complex, determinant: ArmDeterminant, accuracy: float
 ) -> tuple[Complex, Array]:
     """Returns (w, errors), (m,) each: the eigenvalues of an arm near `guesses`, (n,), and their absolute
@@ -172,8 +173,8 @@ def _with_conjugates(w: Complex, error: Array) -> KnownRoots:
 def _is_accurate_and_real_like_neighbour(
     w: complex, error: float, neighbour_w: complex, accuracy: float
 ) -> bool:
-    """Whether w has a relative error of at most `accuracy`, and is real or complex like the eigenvalue
-    `neighbour_w` of the neighbouring rod."""
+    """Whether w has Im w >= 0 and a relative error of at most `accuracy`, and is real or complex like the
+    eigenvalue `neighbour_w` of the neighbouring rod."""
     return error <= accuracy * abs(w) and w.imag >= 0 and (w.imag == 0) == (neighbour_w.imag == 0)
 
 

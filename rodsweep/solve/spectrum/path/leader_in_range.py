@@ -25,7 +25,7 @@ from ....model.parameters import PARAMETERS
 from ....model.rod import Rod
 from ..candidates import line_for_proof
 from .arm_following import ARM_FOLLOWING_SETTINGS, follow_eigenvalues_of_arms
-from .arm_interval import arm_family_with_proofs
+from .arm_interval import arm_family_for_proofs
 from .carried_count import leading_eigenvalues_of_track
 from .eigenvalue_prediction import new_track
 
@@ -35,16 +35,16 @@ class ArmRangeSettings(KernelConstants):
     """Settings for the ranges of arms of a chain."""
 
     max_relative_length: float = 0.2
-    """Length of a range of the parameter coordinate, divided by the coordinate at its start: at most this,
-    the change after which a chain of cycles measures its errors again."""
+    """Largest length of a range of the parameter's coordinate, divided by the coordinate at the start of the
+    range: the change after which a chain of cycles measures its errors again."""
     min_chain_steps: int = 8
     """No range is chosen for fewer steps of the chain: the propagators of a range take the time of about five
     single arms."""
     hull_count: int = 5
     """Number of arms of a range, both ends included, whose hulls are computed."""
     max_successive_failures: int = 2
-    """Number of successive arms without a proof after which a range is given up. A single failure, as where a
-    pair of eigenvalues becomes real, does not last."""
+    """Number of successive arms without a proof after which a range is given up. A single failure, for
+    example where a pair of eigenvalues becomes real, does not last."""
     max_cached_ranges: int = 2
     """Maximum number of ranges whose propagators are cached; a chain needs one at a time."""
     field_ranges: ClassVar = {
@@ -59,10 +59,11 @@ ARM_RANGE_SETTINGS = ArmRangeSettings()
 
 
 class ArmRange(NamedTuple):
-    """Range of a parameter that contains the next arms of a chain. low, high: coordinates of the parameter.
-    max_abs_w: largest |w| of the eigenvalues that are followed. proof_line: real part <= 0 of a line left of
-    the leading eigenvalue, for the proof that it leads. Both belong to the arm at which the range begins.
-    successive_failure_count: number of successive last arms at which the range gave no proof."""
+    """Range of a parameter that contains the next arms of a chain. low, high: smallest and largest coordinate
+    of the parameter. max_abs_w: largest |w| of the eigenvalues that are followed. proof_line: real part <= 0
+    of a line left of the leading eigenvalue, for the proof that it leads. Both belong to the arm at which the
+    range begins. successive_failure_count: number of successive arms, up to the last arm solved, for which
+    the range gave no proof."""
 
     low: float
     high: float
@@ -83,11 +84,12 @@ NO_RANGE = ArmRange(nan, nan, nan, nan)
 def next_range(
     rod: Rod, previous_rod: Rod, name: str, current: ArmRange | None, eigenvalues: Complex
 ) -> ArmRange | None:
-    """The range that contains the next arm of a chain: `current` if possible; None for uniform rods and for
-    steps that are too long.
+    """The range that contains the next arm of a chain: `current` if possible; None for uniform rods, for a
+    step of length 0 or so long that fewer than `min_chain_steps` steps fit into a range, and after
+    `NO_RANGE`.
 
     rod, previous_rod: the last two rods of the chain. name: the varied parameter. current: range of `rod`,
-    `NO_RANGE` or None. eigenvalues: those of `rod` that are followed, (n,), the leading eigenvalue first."""
+    `NO_RANGE` or None. eigenvalues: followed eigenvalues of `rod`, (n,), the leading eigenvalue first."""
     start = rod.coordinate(name)
     step = start - previous_rod.coordinate(name)
     if current is not None and (current is NO_RANGE or current.low <= start + step <= current.high):
@@ -106,12 +108,12 @@ def leader_in_range(
 ) -> tuple[Complex, Array] | None:
     """Returns (w, errors), (m,) each: the eigenvalues of `rod` with Im w >= 0 near `guesses`, (n,), by
     descending real part, and their errors; None if one of them is not found, or if the first is not proved to
-    lead. name: the varied parameter of the chain. guesses: eigenvalues with Im w >= 0 of the previous rod,
-    the leading eigenvalue first."""
+    lead. name: the varied parameter of the chain. arm_range: range with the propagators; None is returned
+    outside it. guesses: eigenvalues with Im w >= 0 of the previous rod, the leading eigenvalue first."""
     p = rod.coordinate(name)
     if not (arm_range.low <= p <= arm_range.high and arm_range.is_usable and np.isfinite(guesses).all()):
         return None
-    # A rod would be a slower key, because its values are tested whenever one is made.
+    # A rod would be a slower key, because every new rod tests its values.
     values = {**rod.values, name: PARAMETERS[name].value(arm_range.low)}
     # Failures change no propagators, so they must not be part of the key.
     family_data = arm_family_and_hulls_of_range(
@@ -144,7 +146,7 @@ def arm_family_and_hulls_of_range(
     try:
         path = ParameterPath(Rod(**dict(values), material=material), name)
         hulls = hulls_along(path, arm_range.low, arm_range.high, ARM_RANGE_SETTINGS.hull_count)
-        family = arm_family_with_proofs(path, hulls, W, arm_range.proof_line)
+        family = arm_family_for_proofs(path, hulls, W, arm_range.proof_line)
     except (ValueError, FloatingPointError):
         return None
     return None if family is None else (family, hulls)

@@ -25,11 +25,11 @@ from ..spectrum import FollowedPoints, Spectrum, errors_with_rounding
 from ..status import SpectrumStatus
 from .arm_following import ARM_FOLLOWING_SETTINGS
 from .arm_interval import follow_interval
-from .carried_arm_count import ArmCountCarrier, confirmed_count_at
+from .carried_arm_count import ArmCountCarrier, confirmed_mode_count_at
 from .carried_count import (
-    carry_count,
     certified_points_and_unstable_counts,
     count_right_of_widest_gap,
+    last_point_with_carried_count,
     leading_eigenvalues_of_track,
     line_and_relative_half_gap,
 )
@@ -61,17 +61,17 @@ class NeighbouringRods:
 
     def rod_at(self, i: int) -> Rod:
         """Rod of index i."""
-        return self.path.rod.with_values(**{self.path.name: float(self.parameter_values[i])})
+        return self.path.rod.with_values(**{self.path.parameter_name: float(self.parameter_values[i])})
 
     @property
-    def path_variables(self) -> Array:
+    def path_variable_values(self) -> Array:
         """Path variable p of every rod, (n,)."""
         return 1 / self.parameter_values if self.path.is_compliance_path else self.parameter_values
 
     @property
     def coefficients(self) -> Array:
         """(F, nu, c2, gamma3) of every rod, (n, 4), identical to `Rod.coefficients`."""
-        columns = coefficients_of({**self.path.rod.values, self.path.name: self.parameter_values})
+        columns = coefficients_of({**self.path.rod.values, self.path.parameter_name: self.parameter_values})
         coefficients = np.empty((len(self), len(columns)))
         for number, column in enumerate(columns):
             coefficients[:, number] = column
@@ -89,8 +89,8 @@ class FollowedSpectra:
 
 
 def follow_spectra(rods: NeighbouringRods, request: SpectrumRequest) -> FollowedSpectra:
-    """The leading `request.modes` eigenvalues of all rods, as far as eigenvalues can be followed from rod to
-    rod and proved complete; `is_solved` is False for every other rod."""
+    """The leading `request.mode_count` eigenvalues of all rods, as far as eigenvalues can be followed from
+    rod to rod and proved complete; `is_solved` is False for every other rod."""
     start_time = time.perf_counter()
     n = len(rods)
     fields = _fields_of_unsolved_spectra(n, request.mode_count)
@@ -138,19 +138,19 @@ def _followed_eigenvalues(
     """Eigenvalues followed from the rod with index `start` as far as possible, with counts; None if the first
     rod fails, or for a uniform rod of nonlinear material, which is solved as an equivalent linear rod."""
     rod = rods.path.rod
-    has_varying_taper = rods.path.name == "taper"
+    has_varying_taper = rods.path.parameter_name == "taper"
     if rod.is_uniform and not (rod.is_uniform_and_linear or has_varying_taper):
         return None  # the linear rod to which uniform rubber is equivalent has the closed form and its proof
     if has_varying_taper or not rod.is_uniform_and_linear:
-        return follow_spectra_of_arms(rods.path, rods.path_variables[start:], request)
-    first = _first_eigenvalues(rods.rod_at(start), request)
+        return follow_spectra_of_arms(rods.path, rods.path_variable_values[start:], request)
+    first = _first_eigenvalues_and_proved_count(rods.rod_at(start), request)
     if first is None:
         return None
     first_w, proved_count = first
     modes = request.mode_count
     later_rods = NeighbouringRods(rods.path, rods.parameter_values[start:])
     track = new_track(first_w, len(later_rods))
-    p = later_rods.path_variables
+    p = later_rods.path_variable_values
     n = follow_eigenvalues(track, later_rods.coefficients, p, rods.path.direction, modes)
     if n == 0:
         return None
@@ -179,7 +179,7 @@ def follow_spectra_of_arms(path: ParameterPath, p: Array, request: SpectrumReque
     ArmCountCarrier(path, interval, modes).carry_counts()
     for i in list_of(np.flatnonzero(interval.proved_counts < modes)):
         point_track = slice_track(interval.track, i, i + 1)
-        interval.proved_counts[i] = confirmed_count_at(
+        interval.proved_counts[i] = confirmed_mode_count_at(
             path, interval, float(interval.p[i]), modes, point_track
         )
     is_accepted, unstable_counts = certified_points_and_unstable_counts(
@@ -197,15 +197,15 @@ def _proved_counts_along(
     tried."""
     n = len(track.w)
     coefficients = rods.coefficients[:n]
-    p = rods.path_variables[:n]
+    p = rods.path_variable_values[:n]
     proved_counts = np.zeros(n, np.int64)
     proved_counts[0] = first_count
     direction = rods.path.direction
     index = 0
     while True:
-        rest_track = slice_track(track, index, n)
+        rest = slice_track(track, index, n), coefficients[index:], p[index:]
         rest_counts = proved_counts[index:]
-        index += carry_count(rest_track, coefficients[index:], p[index:], direction, mode_count, rest_counts)
+        index += last_point_with_carried_count(*rest, direction, mode_count, rest_counts)
         if index == n - 1:
             break
         gap = count_right_of_widest_gap(track, index + 1, mode_count)
@@ -217,9 +217,9 @@ def _proved_counts_along(
     return proved_counts[: index + 1]
 
 
-def _first_eigenvalues(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
-    """Returns (eigenvalues, proved_count); None after a failure or without a proof. eigenvalues: start of the
-    followed eigenvalues, (m,), none complex and unpaired. proved_count: number proved complete."""
+def _first_eigenvalues_and_proved_count(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
+    """Returns (eigenvalues, proved_count); None after a failure or without a proof. eigenvalues: start of
+    following, (m,), complex ones in pairs. proved_count: number of leading ones proved complete."""
     try:
         count = request.mode_count + NEIGHBOURING_RODS_SETTINGS.further_mode_count
         extended_request = replace(request, mode_count=count - 1, certify=True)

@@ -13,7 +13,7 @@ from .....config.arm.axes import PARAMETER_CHANGED_ALONG
 from .....config.task.limit_cycle import LONGEST_AXIS_KEYWORD
 from .....errors import InputError
 from .....results.file.view import ResultView
-from .....results.layouts.limit_cycle import CYCLE_STATUSES
+from .....results.layouts.limit_cycle import STATUS_NAMES_WITH_CYCLE
 from ... import style
 from ...grid_slices import infinite_values_clause
 from ..selection import shared_and_own_texts, shared_and_own_texts_of_arms
@@ -25,7 +25,7 @@ SERIES_LOOKS = tuple(zip(style.LINE_COLOURS, ("o", "s", "^", "D", "v", "P"), str
 """(colour, marker) of each line."""
 MIN_ARROW_POINTS = 4
 """Only a line with at least this number of points has an arrow in the direction of continuation."""
-UNSTABLE_CYCLE_LOOK: dict[str, Any] = {
+UNSTABLE_CYCLE_MARKER_LOOK: dict[str, Any] = {
     "ls": "", "ms": 5.0, "zorder": 3, "label": "unstable cycle"
 }  # fmt: skip
 """Matplotlib style of the open markers of unstable cycles, which are drawn over the markers of the line."""
@@ -35,7 +35,8 @@ def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tupl
     """Returns (figure, description). The figure shows (x_max - x_min)/2 and y_max of the tip, period and
     power against a parameter.
 
-    A straight arm has amplitude 0 and no period. Raises InputError for too many lines.
+    A straight arm has amplitude 0 and no period. is_narrow: whether all panels are stacked. Raises InputError
+    for too many lines.
     """
     first_view = views[0]
     name = abscissa_parameter(first_view)
@@ -53,7 +54,7 @@ def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tupl
     figure = Figure(figsize=(4.4, 8.4) if is_narrow else (8.6, 5.6), layout="constrained")
     panels = figure.subplots(*((4, 1) if is_narrow else (2, 2)), sharex=True).T.ravel()
     common_text, series_texts = _shared_and_own_texts(all_series, name)
-    _draw_series(panels, all_series, series_texts, _legend_entries_of_files(views, name))
+    _draw_series(panels, all_series, series_texts, _legend_entries_and_directions(views, name))
     coloured = zip(all_series, SERIES_LOOKS, strict=False)
     mark_hopf_points(panels, [(point, look[0]) for series, look in coloured for point in series.hopf_points])
     laws = [
@@ -77,7 +78,8 @@ def _draw_series(
     texts: Sequence[str],
     direction_labels: dict[int, tuple[str, bool | None]],
 ) -> None:
-    """Draws all lines in all panels. direction_labels: result of `_legend_entries_of_files`."""
+    """Draws all lines in all panels. texts: text of each line for the legend. direction_labels: result of
+    `_legend_entries_and_directions`."""
     for series, text, (colour, marker) in zip(all_series, texts, SERIES_LOOKS, strict=False):
         look: dict[str, Any] = {"color": colour, "marker": marker, "lw": 1.2, "ms": 3.5}
         # Open, larger markers do not hide the markers of the first file.
@@ -87,13 +89,13 @@ def _draw_series(
         label = ", ".join(filter(None, (word, text)))
         unstable = series.status_names == "unstable"
         for axes, values in zip(panels, series.drawn_quantities, strict=True):
-            axes.plot(*series.with_gaps_at_straight_rods(values), label=label, **look)
+            axes.plot(*series.x_and_values_with_gaps(values), label=label, **look)
             if unstable.any():
                 axes.plot(
                     series.x[unstable],
                     values[unstable],
                     mfc=rcParams["axes.facecolor"],
-                    **look | UNSTABLE_CYCLE_LOOK,
+                    **look | UNSTABLE_CYCLE_MARKER_LOOK,
                 )
             if upward is not None:
                 _draw_direction_arrow(axes, series.x, values, upward, colour)
@@ -109,12 +111,14 @@ def _mark_unknown_amplitudes(axes: Axes, series: AmplitudeSeries, colour: str) -
         "clip_on": False,
     }
     for word in list_of(np.unique(series.status_names)):
-        if word not in (*CYCLE_STATUSES, "straight", "missing"):
+        if word not in (*STATUS_NAMES_WITH_CYCLE, "straight", "missing"):
             x = series.x[series.status_names == word]
             axes.plot(x, np.ones(len(x)), "x", label=f"{word.replace('_', ' ')} (at the top)", **look)
 
 
-def _legend_entries_of_files(views: Sequence[ResultView], name: str) -> dict[int, tuple[str, bool | None]]:
+def _legend_entries_and_directions(
+    views: Sequence[ResultView], name: str
+) -> dict[int, tuple[str, bool | None]]:
     """Returns {id(view): (legend entry, is_upward)}; the path is no key, because all Datasets of Python have
     the same path. is_upward: whether the parameter `name` increased during the continuation; None unless the
     files differ in this direction. Files with different directions of continuation are distinguished by
@@ -161,7 +165,7 @@ def _shared_and_own_texts(all_series: Sequence[AmplitudeSeries], name: str) -> t
         ]
         numbers = [series.first_point_number for series in all_series]
         return shared_and_own_texts_of_arms(view, numbers, {name, *axis_names})
-    return shared_and_own_texts([series.parameters for series in all_series])
+    return shared_and_own_texts([series.constant_parameters for series in all_series])
 
 
 def _label_axes(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> None:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from .....arrays import Array
 from .....errors import InputError
 from .....results.file.view import ResultView
-from .....results.layouts.limit_cycle import CYCLE_STATUSES
+from .....results.layouts.limit_cycle import STATUS_NAMES_WITH_CYCLE
 from .....sweep.points.points import lines_along
 from ....located_thresholds import LocatedThreshold, StoredThresholds
 from ..units_and_labels import DIMENSIONLESS_UNITS, CycleUnits
@@ -24,13 +24,13 @@ class AmplitudeSeries:
     """
 
     view: ResultView
-    parameters: dict[str, float]
+    constant_parameters: dict[str, float]
     """Parameters that are constant along the line, by name."""
     x: Array
     amplitude_x: Array
     tip_y_max: Array
     period: Array
-    power: Array
+    injection_mean: Array
     """Mean power of the follower force over a period."""
     status_names: NDArray[np.str_]
     """Status of each point, as a word."""
@@ -43,12 +43,12 @@ class AmplitudeSeries:
 
     @property
     def drawn_quantities(self) -> tuple[Array, ...]:
-        """Quantities drawn in the panels, from top to bottom."""
-        return self.amplitude_x, self.tip_y_max, self.period, self.power
+        """Quantities drawn in the panels, in the order of `CycleUnits.panel_labels`."""
+        return self.amplitude_x, self.tip_y_max, self.period, self.injection_mean
 
-    def with_gaps_at_straight_rods(self, values: Array) -> tuple[Array, Array]:
-        """Returns (x, values) with NaN inserted between neighbouring points of which one is straight and one
-        is not, because a line between these points would suggest a slope."""
+    def x_and_values_with_gaps(self, values: Array) -> tuple[Array, Array]:
+        """Returns (x, values) with NaN inserted between neighbouring points of which only one is straight,
+        because a line between these points would suggest a slope. values: (points,)."""
         straight = self.status_names == "straight"
         change = np.flatnonzero(straight[1:] != straight[:-1]) + 1
         return np.insert(self.x, change, np.nan), np.insert(values, change, np.nan)
@@ -72,7 +72,7 @@ def amplitude_series(
     statuses = view.status_names
     variables = view.variables
     straight = statuses == "straight"
-    cycle = np.isin(statuses, CYCLE_STATUSES)
+    cycle = np.isin(statuses, STATUS_NAMES_WITH_CYCLE)
     x_amplitudes = (variables["tip_x_max"] - variables["tip_x_min"]).ravel() / 2
     x_values, y_values = (
         units.length * np.where(straight, 0.0, np.where(cycle, values, np.nan))
@@ -91,12 +91,12 @@ def amplitude_series(
         all_series.append(
             AmplitudeSeries(
                 view=view,
-                parameters=line.other_parameters,
+                constant_parameters=line.other_parameters,
                 x=line.values,
                 amplitude_x=x_values[indices],
                 tip_y_max=y_values[indices],
                 period=period[indices],
-                power=power[indices],
+                injection_mean=power[indices],
                 status_names=statuses[indices],
                 hopf_points=hopf_points,
                 units=units,

@@ -18,14 +18,14 @@ from ....located_thresholds import LocatedThreshold
 from ....summary.number_texts import rounded_text
 from ...style import TEX_SYMBOLS
 
-MAX_FITTED_HOPF_DISTANCE = 0.1
+MAX_FITTED_RELATIVE_HOPF_DISTANCE = 0.1
 """Largest |F - F**|/|F**| of a cycle to which a law is fitted. At larger distances higher-order terms
 matter."""
-MAX_LAW_DEVIATION = 0.2
+MAX_RELATIVE_LAW_DEVIATION = 0.2
 """A law is drawn over the range in which it differs from the amplitudes by at most this relative amount."""
 COEFFICIENT_ERROR_FACTOR = 2.0
-"""The error estimate of a coefficient is this factor times the change of the coefficient by one more
-cycle."""
+"""The error estimate of a coefficient is this factor times the change of the coefficient when one more cycle
+is fitted."""
 MIN_FITTED_DISTANCE_IN_HOPF_ERRORS = 100
 """Only cycles whose distance from F** exceeds this multiple of the error of F** are fitted. The distance of
 such cycles is known to one percent."""
@@ -42,10 +42,10 @@ class SquareRootLaw:
     is_above: bool
     """Whether the law holds at F > F**; otherwise at F < F**."""
     end_force: float
-    """Force F farthest from F** up to which the amplitudes follow the law, see MAX_LAW_DEVIATION."""
+    """Force F farthest from F** up to which the amplitudes follow the law, see MAX_RELATIVE_LAW_DEVIATION."""
     coefficient_error: float
-    """Error estimate of a, in L: COEFFICIENT_ERROR_FACTOR times the change of a if a third cycle is used; if
-    only two cycles exist, times the change of a by the extrapolation to F**."""
+    """Error estimate of a, in L: COEFFICIENT_ERROR_FACTOR times the change of a when a third cycle is fitted;
+    if there are only two cycles, times the change of a by the extrapolation to F**."""
 
     def curve(self, point_count: int = 100) -> tuple[Array, Array]:
         """Returns (F, amplitude) on the law from F** to `end_force`, (points,) each, dense near F**."""
@@ -55,7 +55,8 @@ class SquareRootLaw:
 
 
 def square_root_laws(F: Array, amplitude: Array, points: Sequence[LocatedThreshold]) -> list[SquareRootLaw]:
-    """Square-root laws that the amplitudes follow, at most one on each side of a Hopf point.
+    """Square-root laws that the amplitudes follow, at most one on each side of each of the Hopf points
+    `points`.
 
     F, amplitude: force and amplitude of n cycles, (n,) each, in any order; an amplitude is NaN or 0 if there
     is no cycle.
@@ -74,13 +75,13 @@ def _law_on_side(F: Array, amplitude: Array, point: LocatedThreshold, side: int)
     order = np.lexsort((np.where(amplitude > 0, amplitude, np.inf), distance))
     distance, indices = np.unique(distance[order], return_index=True)
     amplitudes = amplitude[order][indices]
-    is_certain = distance > MIN_FITTED_DISTANCE_IN_HOPF_ERRORS * point.error / abs(point.position)
+    is_certain = distance > MIN_FITTED_DISTANCE_IN_HOPF_ERRORS * point.position_error / abs(point.position)
     distance = distance[is_certain]
     amplitudes = amplitudes[is_certain]
     zero_indices = np.flatnonzero(~(amplitudes > 0))  # another branch begins behind a gap
     distance = distance[: zero_indices[0] if zero_indices.size else None]
     amplitudes = amplitudes[: zero_indices[0] if zero_indices.size else None]
-    if len(amplitudes) < 2 or distance[1] > MAX_FITTED_HOPF_DISTANCE:
+    if len(amplitudes) < 2 or distance[1] > MAX_FITTED_RELATIVE_HOPF_DISTANCE:
         return None
     square_over_distance = amplitudes[:2] ** 2 / distance[:2]
     coefficient_square = square_over_distance[0] - distance[0] * (
@@ -88,7 +89,7 @@ def _law_on_side(F: Array, amplitude: Array, point: LocatedThreshold, side: int)
     ) / (distance[1] - distance[0])
     if coefficient_square <= 0:
         return None
-    is_on_law = np.abs(np.sqrt(coefficient_square * distance) / amplitudes - 1) <= MAX_LAW_DEVIATION
+    is_on_law = np.abs(np.sqrt(coefficient_square * distance) / amplitudes - 1) <= MAX_RELATIVE_LAW_DEVIATION
     if not is_on_law[:2].all():
         return None
     law_end = len(amplitudes) if is_on_law.all() else int(np.argmin(is_on_law))
@@ -96,7 +97,7 @@ def _law_on_side(F: Array, amplitude: Array, point: LocatedThreshold, side: int)
     three_quotients = amplitudes[:3] ** 2 / distance[:3]
     extrapolated_square = (
         _parabola_at_zero(distance[:3], three_quotients)
-        if len(three_quotients) > 2 and distance[2] <= MAX_FITTED_HOPF_DISTANCE
+        if len(three_quotients) > 2 and distance[2] <= MAX_FITTED_RELATIVE_HOPF_DISTANCE
         else square_over_distance[0]
     )
     error = COEFFICIENT_ERROR_FACTOR * abs(sqrt(max(extrapolated_square, 0.0)) - sqrt(coefficient_square))
@@ -112,7 +113,7 @@ def _parabola_at_zero(x: Array, values: Array) -> float:
 
 HOPF_SYMBOL = rf"{TEX_SYMBOLS['F']}_{{**}}"
 """Symbol F** in TeX, without dollar signs."""
-HOPF_WORDS = {"hopf": f"${HOPF_SYMBOL}$", "restabilization": "restabilization"}
+HOPF_LEGEND_ENTRIES = {"hopf": f"${HOPF_SYMBOL}$", "restabilization": "restabilization"}
 """Legend entry of a Hopf point by kind: as F grows, the straight rod becomes unstable, or stable again."""
 HOPF_DIGITS = 6
 """Number of significant digits of a Hopf point in a legend."""
@@ -124,7 +125,7 @@ SQUARE_ROOT_LAW_LOOK: dict[str, Any] = {"color": "0.45", "lw": 1.0, "ls": (0, (5
 """Matplotlib style of a square-root law."""
 COEFFICIENT_DIGITS = 3
 """Largest number of significant digits of a coefficient in a legend."""
-MAX_COEFFICIENTS = 3
+MAX_LEGEND_COEFFICIENTS = 3
 """A legend entry lists up to this number of coefficients; for more coefficients the range is printed."""
 
 
@@ -134,7 +135,7 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedThresh
     A Hopf point that belongs to several lines is drawn once, in grey. The legend gives the position of a Hopf
     point that is the only Hopf point of its kind.
     """
-    for kind, word in HOPF_WORDS.items():
+    for kind, word in HOPF_LEGEND_ENTRIES.items():
         colours_of_points: dict[LocatedThreshold, set[str]] = {}
         for point, colour in marks:
             if point.kind == kind:
@@ -165,12 +166,12 @@ def draw_square_root_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str =
 
 
 def _coefficients_text(laws: Sequence[SquareRootLaw]) -> str:
-    """Distinct coefficients of the laws as text; the range if there are more than MAX_COEFFICIENTS."""
+    """Distinct coefficients of the laws as text; the range if there are more than MAX_LEGEND_COEFFICIENTS."""
     sorted_laws = sorted(laws, key=lambda law: law.coefficient)
     coefficient_texts = {
         law: rounded_text(law.coefficient, law.coefficient_error, COEFFICIENT_DIGITS) for law in laws
     }
     texts = list(dict.fromkeys(coefficient_texts.values()))
-    if len(texts) > MAX_COEFFICIENTS:
+    if len(texts) > MAX_LEGEND_COEFFICIENTS:
         return f"{coefficient_texts[sorted_laws[0]]} to {coefficient_texts[sorted_laws[-1]]}"
     return ", ".join(texts)

@@ -3,7 +3,7 @@
 Minimally augmented systems (Govaerts 2000, ch. 4 and 10): the test function of a cycle is the solution of a
 bordered linear system of the linearised equations. This module solves the bordered system iteratively. Each
 correction uses the residual at the cycle itself and the matrix factors of the nearby cycle, so that no
-further matrix is factorised.
+further matrix is factorised. N is the number of orbit values.
 """
 
 from dataclasses import dataclass
@@ -27,10 +27,10 @@ class MinimallyAugmentedSettings:
     relative_cycle_tolerance: float = 1e-9
     """Relative tolerance of a cycle and its test function; the test function then has an error of about
     1e-8."""
-    tolerance_to_distance_ratio: float = 0.01
+    cycle_tolerance_over_curve_distance: float = 0.01
     """A cycle is corrected to the larger of `relative_cycle_tolerance` and this fraction of its estimated
     distance from the curve of special points; the estimate is the test function divided by its slope."""
-    min_contraction_rate: float = 10.0
+    min_assumed_contraction_rate: float = 10.0
     """Lower limit of the assumed contraction rate: the ratio of successive corrections, divided by the
     relative distance of the cycle from the orbit at which the matrix was assembled. The measured rate is 2 or
     3 for large cycles; a larger assumed rate is safe."""
@@ -42,7 +42,7 @@ class MinimallyAugmentedSettings:
     """The iteration stops if a correction has at most this relative size but is not much smaller than the
     previous correction (ratio above `max_successive_correction_ratio`; for a test function at a fixed cycle,
     above `min_stagnant_step_ratio` of `SPECIAL_POINT_SETTINGS`): the correction is then rounding error."""
-    max_corrections: int = 30
+    max_corrections_per_cycle: int = 30
     """Maximum number of corrections of one cycle."""
     inverse_iteration_shift: float = 1e-9
     """Relative distance of the shift of inverse iteration from the eigenvalue; with this distance the shifted
@@ -91,8 +91,9 @@ class TorusTestFunction:
     """Test function of torus points: |mu| - 1, mu: complex multiplier nearest to the unit circle, which is
     corrected together with its eigenvector. matrix: matrix of a nearby cycle, whose factors are used.
     null_vectors: real and imaginary part of the approximate eigenvector, (2, N + 1). shifted_propagator: P -
-    (1 + shift) mu S, the matrix of inverse iteration. bordered_propagator: P - mu S with the border of
-    Newton's method for mu. Raises Unsolvable if all multipliers of this cycle are real."""
+    (1 + shift) mu S, the matrix of inverse iteration (P: propagator, S: symmetry). bordered_propagator: P -
+    mu S with the border of Newton's method for mu. Raises Unsolvable if all multipliers of this cycle are
+    real."""
 
     def __init__(self, matrix: BorderedMatrix) -> None:
         self.matrix = matrix
@@ -152,12 +153,12 @@ def correct_until_converged(function: FoldTestFunction | TorusTestFunction, orbi
     Unsolvable."""
     value = function.value(orbit)
     previous_change = np.inf
-    for correction_index in range(MINIMALLY_AUGMENTED_SETTINGS.max_corrections):
+    for correction_index in range(MINIMALLY_AUGMENTED_SETTINGS.max_corrections_per_cycle):
         function.correct_null_vectors(orbit)
         previous_value = value
         value = function.value(orbit)
         change = abs(value - previous_value)
-        if change <= SPECIAL_POINT_SETTINGS.test_function_change_tolerance or (
+        if change <= SPECIAL_POINT_SETTINGS.test_function_correction_tolerance or (
             change > SPECIAL_POINT_SETTINGS.min_stagnant_step_ratio * previous_change
             and change <= MINIMALLY_AUGMENTED_SETTINGS.max_relative_correction_by_rounding
         ):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from .....solve_progress import report
 from ....orbit.orbit import Orbit
 from ....unsolvable import Unsolvable
-from ...bordered.condition import BorderCondition, moved_orbit
+from ...bordered.border_condition import BorderCondition, moved_orbit
 from ...bordered.matrix import BorderedMatrix
 from .fold_and_torus_test_functions import MINIMALLY_AUGMENTED_SETTINGS
 
@@ -36,18 +36,18 @@ class NearbyCycleSolver:
         self.distance_from_matrix_orbit = 0.0
         self.test_function = self._family.test_function(self.matrix)
 
-    def solve(
+    def cycle_and_test_value(
         self, orbit: Orbit, condition: BorderCondition, slope: float, tolerance: float
     ) -> tuple[Orbit, float]:
         """(cycle near `orbit` that fulfils `condition`, value of its test function); raises Unsolvable.
 
         slope: approximate modulus of the derivative of the test function across the curve. tolerance:
         relative tolerance of cycle and test function; far from the curve
-        `MINIMALLY_AUGMENTED_SETTINGS.tolerance_to_distance_ratio` allows more."""
+        `MINIMALLY_AUGMENTED_SETTINGS.cycle_tolerance_over_curve_distance` allows more."""
         previous_change = 0.0
-        for _ in range(MINIMALLY_AUGMENTED_SETTINGS.max_corrections):
+        for _ in range(MINIMALLY_AUGMENTED_SETTINGS.max_corrections_per_cycle):
             report()
-            orbit, change = self._corrected_orbit(orbit, condition)
+            orbit, change = self._corrected_orbit_and_change(orbit, condition)
             distance = self.distance_from_matrix_orbit
             previous_value = self.test_function.value(orbit)
             self.test_function.correct_null_vectors(orbit)
@@ -66,10 +66,12 @@ class NearbyCycleSolver:
                 contraction = (
                     MINIMALLY_AUGMENTED_SETTINGS.contraction_safety_factor * correction_ratio / distance
                 )
-                self.contraction_rate = max(MINIMALLY_AUGMENTED_SETTINGS.min_contraction_rate, contraction)
+                min_rate = MINIMALLY_AUGMENTED_SETTINGS.min_assumed_contraction_rate
+                self.contraction_rate = max(min_rate, contraction)
             # The product predicts the next change, that is the error left after this correction.
             if change_after_step * min(correction_ratio, 1.0) <= max(
-                tolerance, MINIMALLY_AUGMENTED_SETTINGS.tolerance_to_distance_ratio * abs(value) / slope
+                tolerance,
+                MINIMALLY_AUGMENTED_SETTINGS.cycle_tolerance_over_curve_distance * abs(value) / slope,
             ):
                 return orbit, value
             if (
@@ -87,10 +89,10 @@ class NearbyCycleSolver:
             f"Newton's method for the cycle does not converge: its last relative step is {change:.0e}"
         )
 
-    def _corrected_orbit(self, orbit: Orbit, condition: BorderCondition) -> tuple[Orbit, float]:
+    def _corrected_orbit_and_change(self, orbit: Orbit, condition: BorderCondition) -> tuple[Orbit, float]:
         """(orbit after one correction under `condition` with the current matrix, relative change of the
         orbit); raises Unsolvable."""
         step = self.matrix.newton_step_at_nearby_orbit(orbit, condition.border, condition.residual(orbit))
-        change = condition.relative_change_within_limit(orbit, step)
+        change = condition.require_small_relative_change(orbit, step)
         self.distance_from_matrix_orbit += change
         return moved_orbit(orbit, condition.scale.parameter_name, step), change

@@ -14,7 +14,7 @@ import numpy as np
 from ...arrays import Array, Complex, list_of
 from ...model.dispersion import local_coefficients_at_ends, local_wave_numbers
 from ..exponents import EXPONENT_SETTINGS
-from ..roots.roots import Roots
+from ..roots.roots import RootsOfD
 from ..roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
 from .determinant import ArmDeterminant
 from .hull.region import EigenvalueHull
@@ -38,8 +38,9 @@ def refine_mesh_eigenvalues(
     max_q: float,
     largest_w: float = 0.0,
     max_end_q: Array = UNRESOLVED_END_WAVE_NUMBERS,
-) -> Roots:
-    """Roots of an arm's D, refined from the eigenvalues in `mesh_w`, (n,), that approximate a root of D.
+) -> RootsOfD:
+    """Roots of an arm's D, refined from the eigenvalues in `mesh_w`, (n,), that approximate a root
+    of D.
 
     mesh_w: eigenvalues of a mesh. max_q: largest wave number |q|, averaged along the arm, that the mesh
     resolves. largest_w: |w| at which D will be needed afterwards. max_end_q: largest |q| that the elements at
@@ -117,8 +118,9 @@ def _roots_with_errors(
     guesses: list[_Guess],
     determinant: ArmDeterminant,
     unmatched_mesh_eigenvalue_count: int,
-) -> Roots:
-    """The `Roots` of the sorted roots `located`, each refined from the guess at the same place."""
+) -> RootsOfD:
+    """The `RootsOfD` of the sorted roots `located`, each refined from the guess at the same place of
+    `guesses`."""
     errors = _errors_of_located_roots(located, determinant)
     # For so few numbers Python is faster than NumPy.
     displacement = [
@@ -133,7 +135,7 @@ def _roots_with_errors(
         )
         for root, error in zip(located, errors, strict=True)
     ]
-    return Roots(
+    return RootsOfD(
         mesh_indices=np.array([guess.mesh_eigenvalue_index for guess in guesses], np.int64),
         w=np.array([root.w for root in located], complex),
         error=np.array(errors, float),
@@ -164,9 +166,9 @@ def _is_in_eigenvalue_box(w: complex, hull: EigenvalueHull) -> bool:
 def _separated_close_roots(
     w: list[complex], errors: list[float], determinant: ArmDeterminant
 ) -> tuple[list[complex], list[float]]:
-    """Returns (w, half_distance): w with every two eigenvalues closer than their errors moved to roots of D.
-    errors: errors of w. half_distance: half the distance of each eigenvalue from its partner; inf if it was
-    not moved."""
+    """Returns (w, half_distance). w: the eigenvalues; every pair closer than `max_pair_distance_in_errors`
+    times the sum of its `errors` is replaced by two estimates of roots of D. half_distance: for each
+    eigenvalue, half the new distance from its partner; inf if the eigenvalue was not moved."""
     w = w.copy()
     half_distance = [math.inf] * len(w)
     eigenvalues_and_errors = zip(w, errors, strict=True)
@@ -183,7 +185,7 @@ def _separated_close_roots(
         if abs(w[partner] - w[i]) <= ROOT_SETTINGS.max_pair_distance_in_errors * (
             errors[i] + errors[partner]
         ):
-            for _ in range(ROOT_SETTINGS.parabolas_per_pair):
+            for _ in range(ROOT_SETTINGS.successive_parabolas_per_pair):
                 middle = (w[i] + w[partner]) / 2
                 # The middle of a real or conjugate pair is real, and rounding must not move it off the axis.
                 if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):

@@ -11,7 +11,7 @@ from ..model.arm.neglected import (
     Effect,
     Validity,
     angular_frequency_at_smallest_drag,
-    base_force_of_equal_compression,
+    base_force_of_largest_compression,
     compression_effect,
     neglected_effects,
     worst_validity,
@@ -19,23 +19,23 @@ from ..model.arm.neglected import (
 from ..model.arm.quantities import LOAD_NAMES, SECTION_SIZE_NAMES
 from ..solve.changes.threshold_kinds import Threshold, ThresholdKind
 from ..solve.solve_lock import exclusive_solve
-from .flutter import ThresholdsOverDrags, thresholds_with_drag
+from .flutter_over_drags import ThresholdsOverDrags, thresholds_with_drag
 
 REMEDY_DIGITS = 2
 """Significant digits of the factors in remedies, which are rounded to the safe side."""
 MAX_THINNING_ITERATIONS = 20
 """Maximum number of iterations of `thickness_factor_for_small_inertia`. Ten iterations suffice if the inertia
 of the arm and of the fluid are comparable."""
-TARGET_REQUIRED_VISCOSITY_FACTOR = 0.995
+TARGET_REQUIRED_TO_ACTUAL_VISCOSITY = 0.995
 """Target of the iterations of `thickness_factor_for_small_inertia` for the ratio of required to actual
 viscosity. The target is below 1, so that inertia ends within its limit."""
-MIN_REQUIRED_VISCOSITY_FACTOR = 0.99
+MIN_REQUIRED_TO_ACTUAL_VISCOSITY = 0.99
 """`thickness_factor_for_small_inertia` stops iterating when the ratio of required to actual viscosity is
 between this number and 1. The thickness then has two correct digits."""
 
 
 @dataclass(frozen=True)
-class Assessment:
+class ValidityAssessment:
     """Neglected effects on an arm, at the flutter threshold and under the load, compared with their limits in
     the model. thresholds: thresholds of the arm for every drag."""
 
@@ -50,10 +50,11 @@ class Assessment:
 
     @cached_property
     def compression_under_load(self) -> tuple[Effect, ...]:
-        """Compression by the arm's load, the only neglected effect that it changes; empty without load."""
+        """Compression by the arm's load, the only neglected effect that the load changes; empty without
+        load."""
         if self.arm.load_name is None:
             return ()
-        return (compression_effect(self.arm, base_force_of_equal_compression(self.arm, self.arm.F)),)
+        return (compression_effect(self.arm, base_force_of_largest_compression(self.arm, self.arm.F)),)
 
     @property
     def dimensionless_flutter_force(self) -> float | None:
@@ -73,7 +74,7 @@ class Assessment:
         return Validity(int(worst_validity(self.neglected_effects_at_flutter, of_cycles=False)))
 
     @property
-    def validity_of_verdict(self) -> Validity:
+    def validity_at_flutter_and_load(self) -> Validity:
         """Validity of the model at the flutter threshold and under the load: the worse of the two."""
         return Validity(int(worst_validity(self.effects, of_cycles=False)))
 
@@ -85,7 +86,7 @@ class Assessment:
 
 
 def first_hopf_point_for_likeliest_drag(thresholds: ThresholdsOverDrags) -> Threshold | None:
-    """First Hopf point for the most likely drag for which the arm flutters; None if it does not flutter."""
+    """First Hopf point for the most likely drag for which the arm flutters; None if no drag has one."""
     return next(
         (
             threshold
@@ -107,7 +108,7 @@ def effects_at_flutter(arm: SlenderArm, thresholds: ThresholdsOverDrags) -> tupl
     return neglected_effects(
         arm,
         angular_frequency_at_smallest_drag(arm, abs(threshold.frequency)),
-        base_force_of_equal_compression(arm, threshold.value),
+        base_force_of_largest_compression(arm, threshold.value),
     )
 
 
@@ -138,12 +139,12 @@ def thickness_factor_for_small_inertia(arm: SlenderArm) -> float:
         )
         effects = effects_at_flutter(scaled_arm, thresholds)
         required_viscosity_factor = viscosity_factor_for_small_inertia(effects)
-        if MIN_REQUIRED_VISCOSITY_FACTOR < required_viscosity_factor <= 1.0:
+        if MIN_REQUIRED_TO_ACTUAL_VISCOSITY < required_viscosity_factor <= 1.0:
             # A thinner arm may still be crushed or bent too much, and is then no remedy.
             is_valid = worst_validity(effects, of_cycles=False) < Validity.does_not_apply
             return factor if is_valid else nan
         # Mass times rate over drag scales as thickness^6/viscosity^2, hence thickness as viscosity^(1/3).
-        factor *= (required_viscosity_factor / TARGET_REQUIRED_VISCOSITY_FACTOR) ** (-1 / 3)
+        factor *= (required_viscosity_factor / TARGET_REQUIRED_TO_ACTUAL_VISCOSITY) ** (-1 / 3)
     return nan
 
 

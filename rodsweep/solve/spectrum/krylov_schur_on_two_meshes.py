@@ -33,7 +33,8 @@ class TwoMeshSettings:
     spare_eigenvalue_count: int = 2
     """Number of eigenvalues requested first on a mesh, in addition to the wanted modes."""
     max_relative_change_by_doubled_request: float = 1e-9
-    """The number of requested eigenvalues is doubled until the leading ones change relatively by less."""
+    """The number of requested eigenvalues is doubled until the relative change of the leading eigenvalues is
+    less than this."""
     max_scaled_change_by_doubled_request: float = 3e-11
     """The doubling also ends if the leading eigenvalues change by less than this times (|shift| + F^2). The
     value is a hundred times `scaled_rounding_error`, as rounding differs between SLEPc's releases and
@@ -52,8 +53,8 @@ TWO_MESH_SETTINGS = TwoMeshSettings()
 
 
 def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
-    """The leading `request.modes` eigenvalues of a rod; a failure is returned as a status, never raised. No
-    result is proved; `request.certify` is ignored."""
+    """The leading `request.mode_count` eigenvalues of a rod; a failure is returned as a status, never raised.
+    No result is proved; `request.certify` is ignored."""
     return spectrum_or_failure(lambda: _spectrum_or_raise(rod, request), request)
 
 
@@ -65,7 +66,7 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
         mesh_accuracy(request.accuracy, needs_vectors=True) if request.vector_node_count else request.accuracy
     )
     mesh: AnyMesh = problem.mesh_for(modes, mesh_tolerance)
-    # Without D only a second mesh tells the error.
+    # Without D only a second mesh gives an error estimate.
     coarser_eigenvalues = _leading_eigenvalues(problem, mesh, modes)
     best_spectrum: Spectrum | None = None
     smallest_error = math.inf
@@ -85,7 +86,8 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
             if spectrum.status == SpectrumStatus.ok:
                 return spectrum
             # The finest mesh may have the largest rounding error. An eigenvalue smaller than its rounding
-            # error, as the leading one of a pulled rod, must not decide: only a coarse mesh makes it large.
+            # error, such as the leading eigenvalue of a pulled rod, must not decide: with `rounding_scale` in
+            # the denominator its error counts only on a coarse mesh.
             moduli = np.abs(spectrum.eigenvalues)
             largest_error = float((spectrum.error_estimate / (moduli + rounding_scale)).max())
             if best_spectrum is None or largest_error < smallest_error:
@@ -104,7 +106,7 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
 
 def _missed_accuracy_text(problem: TransverseProblem, request: SpectrumRequest, spectrum: Spectrum) -> str:
-    """Which mode misses the requested accuracy by most, by how much, why, and what to change."""
+    """Message on the mode with the largest relative error: this error, its cause, and what to change."""
     moduli = np.abs(spectrum.eigenvalues)
     relative_errors = spectrum.error_estimate / moduli
     index = int(np.argmax(relative_errors))
@@ -172,14 +174,14 @@ def _errors_between_meshes(w: Complex, coarser_w: Complex, shift: float, roundin
     """Absolute errors of the sorted eigenvalues w, (k,), from the unsorted eigenvalues `coarser_w`, (l,), of
     a coarser mesh.
 
-    shift: modulus of the shift. rounding_scale: result of `_rounding_scale`. Two meshes may
-    agree on one eigenvalue by chance. The relative error of an eigenvalue is therefore the largest of three
-    differences: of the eigenvalue and of its two neighbours, of which rounding errors are no part. Near a
-    double eigenvalue the stated rounding errors are larger than elsewhere."""
+    shift: modulus of the shift. rounding_scale: result of `_rounding_scale`. Two meshes may agree on one
+    eigenvalue by chance. The mesh error of an eigenvalue is therefore the largest of three relative
+    differences between the meshes: that of the eigenvalue, and those of its two neighbours less their
+    rounding errors. Rounding errors, which are larger near a double eigenvalue, are added."""
     moduli = np.abs(w)
     separations = np.abs(w[:, None] - w) + np.diag(np.full(len(w), np.inf))
-    # Close eigenvalues are ill-conditioned: rounding changes the product (v - w1) (v - w2) of two close ones
-    # by its error times |w|, and a double one by the root of this.
+    # Close eigenvalues are ill-conditioned: a rounding error e of w changes the product (v - w1) (v - w2) by
+    # e |w|, and hence a double eigenvalue by the square root of e |w|.
     squared_errors = TWO_MESH_SETTINGS.scaled_rounding_error * (moduli + shift) * moduli
     crowding_errors = np.minimum(
         squared_errors / separations.min(axis=1, initial=np.inf), np.sqrt(squared_errors)
@@ -202,7 +204,8 @@ def _spectrum_of_mesh(
     eigenvalues: _MeshEigenvalues,
     error: Array,
 ) -> Spectrum:
-    """The spectrum of one mesh, with the status from the errors. error: of each found eigenvalue, (k,)."""
+    """The spectrum of one mesh, with the status from the errors. error: absolute error of each eigenvalue
+    found, (k,)."""
     w = eigenvalues.w
     modes = request.mode_count
     is_accurate = bool((error[:modes] <= request.accuracy * np.abs(w[:modes])).all())

@@ -8,7 +8,7 @@ from matplotlib.ticker import FixedFormatter, FixedLocator
 
 from ....arrays import Array, list_of
 
-LABEL_GAP = 0.25
+MIN_LABEL_GAP_OVER_HEIGHT = 0.25
 """Smallest gap between neighbouring tick labels of a horizontal axis, divided by the height of the labels."""
 EDGE_TOLERANCE = 1e-9
 """Rounding tolerance for a tick at the end of an axis, divided by the length of the axis; and for the decimal
@@ -47,7 +47,7 @@ def _thin_ticks_of_axis(axis: Axis) -> bool:
     is_horizontal = isinstance(axis, XAxis)
     extents = np.array([box.intervalx if is_horizontal else box.intervaly for box in boxes])
     starts, ends = extents[extents[:, 0].argsort()].T
-    min_gap = LABEL_GAP * max(box.height for box in boxes) if is_horizontal else 0.0
+    min_gap = MIN_LABEL_GAP_OVER_HEIGHT * max(box.height for box in boxes) if is_horizontal else 0.0
     if (starts[1:] - ends[:-1] >= min_gap).all():
         return False
     kept = _positions_of_kept_ticks(np.array([position for position, _ in ticks]), axis.get_scale() == "log")
@@ -59,8 +59,9 @@ def _thin_ticks_of_axis(axis: Axis) -> bool:
 
 
 def _positions_of_kept_ticks(positions: Array, is_logarithmic: bool) -> Array:
-    """The positions, (m,), of the ticks, (n,), that stay: on a logarithmic axis the powers of ten, if there
-    are at least two and other ticks; otherwise every second tick, with 0 if it is a tick."""
+    """Positions, (m,), of the ticks that stay. On a logarithmic axis: the powers of ten, if there are at
+    least two powers of ten and also other ticks. Otherwise: every second tick, with 0 if 0 is a tick.
+    positions: positions of all ticks, (n,)."""
     if is_logarithmic:
         exponents = np.log10(positions)
         is_power = np.abs(exponents - exponents.round()) < EDGE_TOLERANCE

@@ -51,14 +51,14 @@ class TracedCurves(Generic[AnyCurve]):
 class CurveTracingState(Generic[AnyCurve]):
     """State of the search for curves through seed points.
 
-    tolerance: a seed point lies on a curve if its distance is at most this number. seed_distances_along_row:
-    distance of each seed point from the nearest curve so far, by index. curves: curves traced so far, each
-    only once. missing_items: numbers of the work items whose missing results stopped the search.
-    untried_seeds: indices of the seed points that lie on no curve so far and were not tried, without the seed
-    point at which the search stopped.
+    seed_distance_tolerance: a seed point lies on a curve if its distance is at most this number.
+    seed_distances_along_row: distance of each seed point from the nearest curve so far, by index. curves:
+    curves traced so far, each only once. missing_items: numbers of the work items whose missing results
+    stopped the search. untried_seeds: indices of the seed points that lie on no curve so far and were not
+    tried, without the seed point at which the search stopped.
     """
 
-    tolerance: float
+    seed_distance_tolerance: float
     seed_distances_along_row: dict[int, float]
     curves: list[AnyCurve] = field(default_factory=list)
     missing_items: list[int] = field(default_factory=list)
@@ -70,7 +70,9 @@ class CurveTracingState(Generic[AnyCurve]):
         seed points; valid if `missing_items` is empty."""
         # Distances beyond the tolerance belong to seeds on no curve.
         seed_distances = [
-            distance for distance in self.seed_distances_along_row.values() if distance <= self.tolerance
+            distance
+            for distance in self.seed_distances_along_row.values()
+            if distance <= self.seed_distance_tolerance
         ]
         return TracedCurves(
             tuple(self.curves),

@@ -23,7 +23,8 @@ class DiagramCurve(NamedTuple):
 
 
 def diagram_curves(data: DatasetOrArray, prefix: str, second_parameter: str) -> list[DiagramCurve]:
-    """Curves of a result of the task `phase_diagram`. prefix: prefix of their variables, such as "curve"."""
+    """Curves of a result of the task `phase_diagram` over F and the parameter `second_parameter`. prefix:
+    start of the names of the variables of the curves, "curve" or "cycle_curve"."""
     numbers = data[f"{prefix}_number"].values
     x, y = (data[f"{prefix}_{name}"].values for name in ("F", second_parameter))
     kinds = flag_words(data[f"{prefix}_kind"])
@@ -40,7 +41,7 @@ def unstable_counts_between_crossings(data: DatasetOrArray, row_parameter: str) 
         data[name].transpose(row_parameter, "crossing").values for name in ("crossing_at", "unstable_after")
     )
     material = config_from_resolved(json.loads(data.attrs["config_resolved"])).rod_material
-    crushing_forces = material.relative_crushing_forces(
+    crushing_forces = material.crushing_forces_over_k1(
         data["taper"].values if "taper" in data else np.ones(())
     )
     # Counts are known between neighbouring crossings of a row, so take the points midway.

@@ -48,7 +48,7 @@ class HopfSearchLine:
 
         forget_arm_determinants()
         fixed = self.fixed_parameters
-        ratio = self.material.relative_crushing_force(fixed.get("taper", 1.0))
+        ratio = self.material.crushing_force_over_k1(fixed.get("taper", 1.0))
         margin = 1 - CRUSHING_END_SETTINGS.relative_crushing_margin
         start_value = self.start
         end_value = self.stop
@@ -77,8 +77,8 @@ def hopf_search_lines_of_points(points: Points) -> list[HopfSearchLine]:
 
 def _hopf_search_lines_along(points: Points, name: str, names: Sequence[str]) -> Iterator[HopfSearchLine]:
     """Yields the lines along the parameter `name`, if at least two of its values are finite. Lines along F
-    begin at 0, because the Hopf point may lie below the smallest force of the points. Arms with equal
-    parameters and different profiles have no line, because a file cannot distinguish such arms."""
+    begin at 0 or a pull, because the Hopf point may lie below the smallest force of the points. Arms with
+    equal parameters and different profiles have no line, because a file cannot distinguish such arms."""
     columns = {parameter_name: points.parameter_values_of_rods[parameter_name] for parameter_name in names}
     other_names = [parameter_name for parameter_name in names if parameter_name != name]
     if points.is_grid:
@@ -88,7 +88,7 @@ def _hopf_search_lines_along(points: Points, name: str, names: Sequence[str]) ->
         range_ends = [_finite_range(columns[name])] * len(rods)
         materials = [points.material] * len(rods)
     else:
-        distinct_materials, numbers = points.materials_of_rods
+        distinct_materials, numbers = points.distinct_materials_and_indices
         table = np.stack([numbers, *(columns[parameter_name] for parameter_name in other_names)], axis=-1)
         lines, line = np.unique(table, axis=0, return_inverse=True)
         order = np.argsort(line.ravel(), kind="stable")
@@ -112,7 +112,8 @@ def _finite_range(values: np.ndarray) -> tuple[float, float]:
 def filled_hopf_point_variables(
     names: Collection[str], lines: Sequence[HopfSearchLine], results: "Sequence[ThresholdSearchResult | None]"
 ) -> tuple[FilledVariable, ...]:
-    """Hopf points of all lines, one line after another, as variables of a file."""
+    """Hopf points of all lines, one line after another, as variables of a file. names: parameters of the
+    points. results: result of `HopfSearchLine.hopf_points` of each line."""
     solved = [(line, result) for line, result in zip(lines, results, strict=True) if result is not None]
     rows = [_hopf_point_values(line, crossing) for line, result in solved for crossing in result.thresholds]
     proved = sum(result.is_proved_to_the_end for _, result in solved)

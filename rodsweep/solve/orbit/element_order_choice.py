@@ -9,7 +9,7 @@ import numpy as np
 from ...arrays import Array
 from ...determinant.exponents import EXPONENT_SETTINGS
 from ...model.compiled.kernel_constants import KernelConstants
-from .coefficient_tails import coefficients_of_elements
+from .coefficient_tails import largest_coefficients_of_elements
 from .orbit import Orbit
 from .orbit_mesh import OrbitMesh, mesh_of_orbit
 
@@ -19,13 +19,13 @@ class RodElementOrderRatioSettings(KernelConstants):
     """Settings for the orders of the elements of a mesh relative to the largest order."""
 
     min_element_order: int = 4
-    """Smallest order of an element that is chosen from coefficients."""
+    """Smallest element order that is chosen from coefficients."""
     min_element_order_ratio: float = 0.2
     """Smallest order of an element, divided by the largest order of the mesh. Elements of short and stiff
     segments reach 0.25."""
     rounding_steps_of_ratio_per_unit: int = 64
-    """Ratios are rounded up to multiples of 1 over this number, which is less than one order at every allowed
-    order."""
+    """Ratios are rounded up to multiples of 1/`rounding_steps_of_ratio_per_unit`, a step of less than one
+    order at every allowed order."""
     max_neglected_coefficient_ratio: float = 1 / 3
     """Largest neglected coefficient of an element that loses orders, divided by that of the elements of the
     largest order. Errors are quadratic in the coefficients: the largest error of twelve meshes of three arms
@@ -41,8 +41,8 @@ ROD_ELEMENT_ORDER_RATIO_SETTINGS = RodElementOrderRatioSettings()
 
 
 def element_order_ratios(orbit: Orbit, order: int, max_tail: float) -> tuple[float, ...]:
-    """Ratio of the order that each element needs to the largest order, at least `min_element_order_ratio`; ()
-    if all are 1.
+    """For each element, the order that it needs, divided by the largest of these orders; at least
+    `min_element_order_ratio`; () if all ratios are 1, or for a single element.
 
     order: largest order, with which the Legendre coefficients in space are expected to fall to `max_tail`
     times the largest coefficient.
@@ -62,11 +62,12 @@ def element_order_ratios(orbit: Orbit, order: int, max_tail: float) -> tuple[flo
 
 
 def without_excess_orders(mesh: OrbitMesh, orbit: Orbit) -> OrbitMesh:
-    """`mesh` with lower orders of the elements whose neglected coefficients are then still far smaller than
-    those of the elements of the largest order (`max_neglected_coefficient_ratio`): a change of the largest
-    order changes all orders in proportion, and coefficients of short or stiff segments fall faster.
-    Coefficients are those of the solved `orbit`. Returns `mesh` itself if its orders are equal, or if those
-    of the orbit are not in the same ratios and larger by 2."""
+    """`mesh` with lower orders of some elements: their neglected coefficients are still at most
+    `max_neglected_coefficient_ratio` times those of the elements of the largest order. Such elements exist
+    because a change of the largest order changes all orders in proportion, and coefficients of short or stiff
+    segments fall faster. Coefficients are those of the solved `orbit`. Returns `mesh` itself if all its
+    orders are equal, if the mesh of the orbit has other edges or order ratios, or if its largest order is
+    less than the order of `mesh` plus 2."""
     solved_mesh = mesh_of_orbit(orbit)
     if (
         not mesh.order_ratios
@@ -91,17 +92,17 @@ def without_excess_orders(mesh: OrbitMesh, orbit: Orbit) -> OrbitMesh:
 
 
 def _relative_coefficients(orbit: Orbit) -> list[Array]:
-    """Largest moduli of the Legendre coefficients in space of each element, (p + 1,) each, p: order of the
-    element, each field divided by its largest coefficient along the rod."""
-    coefficients = coefficients_of_elements(orbit)
+    """Largest moduli over n1, n2 and m3 of the Legendre coefficients in space of each element, (p + 1,) each,
+    p: order of the element. Each field is first divided by its largest coefficient along the rod."""
+    coefficients = largest_coefficients_of_elements(orbit)
     scale = np.max([c.max(axis=1) for c in coefficients], axis=0)
     scale = np.maximum(scale, EXPONENT_SETTINGS.min_divisor)
     return [(c / scale[:, None]).max(axis=0) for c in coefficients]
 
 
 def _needed_order(c: Array, max_tail: float, order: int) -> int:
-    """Lowest order of an element whose coefficient, and that of the next order, is at most `max_tail`; not
-    above `order`. Two orders are tested, because one coefficient may vanish by parity. c: moduli of the
-    coefficients of orders 0 to p, (p + 1,)."""
+    """Lowest order at which the coefficient of an element and the coefficient of the next order are at most
+    `max_tail`; `order` if there is none. Two orders are tested, because one coefficient may vanish by parity.
+    c: moduli of the coefficients of orders 0 to p, (p + 1,)."""
     small_indices = np.flatnonzero(np.maximum(c[:-1], c[1:]) <= max_tail)
     return int(small_indices[0]) if len(small_indices) else order

@@ -51,7 +51,7 @@ def tip_layer_factor(rod: Rod) -> float:
     """T = tanh(kappa)/kappa of the boundary layer of theta at the tip of a uniform rod with gamma3 = 0 < c2.
     kappa^2 = g nu/c2. T = 0 for all other rods, which have no such layer."""
     # With rotational drag theta has its own time derivative, and without shear it is no unknown of its own.
-    if rod.rotational_drag > 0 or rod.c2 == 0:
+    if rod.base_rotational_drag > 0 or rod.c2 == 0:
         return 0.0
     squared_kappa = rod.g * rod.nu / rod.c2
     # For imaginary kappa tanh becomes tan. The series holds for either sign of kappa^2.

@@ -13,7 +13,7 @@ R = TypeVar("R")
 
 
 def no_hint(name: str) -> str:
-    """No advice on any argument."""
+    """Empty advice, whatever the argument `name`."""
     return ""
 
 
@@ -48,7 +48,8 @@ def require_arguments_of_signature(
 ) -> None:
     """Raises InputError for the first surplus, repeated, unknown or missing argument of a call.
 
-    values, named: positional and keyword arguments of the call. hint: as in `refusing_wrong_arguments`.
+    allowed: signature of the called function. values, named: positional and keyword arguments of the call.
+    example, hint: as in `refusing_wrong_arguments`.
     """
     parameters = list(allowed.parameters.values())
     positional = [

@@ -1,7 +1,8 @@
 """Newton's method for a cycle with the parameter as a further unknown and one further equation.
 
 Near a fold two cycles have the same parameter, so the parameter cannot be prescribed. The further equation
-prescribes a linear combination of deflection, logarithm of the period, and parameter (`scale`).
+prescribes a linear combination of deflection, logarithm of the period, and parameter (`scale`). N is the
+number of orbit values.
 """
 
 from dataclasses import dataclass, replace
@@ -55,9 +56,10 @@ class BorderCondition:
         """The cycle near `orbit` that fulfils the condition, by Newton's method; raises Unsolvable.
 
         tolerance: relative error of the cycle. workspace: memory of Newton's matrices. max_matrix_distance:
-        largest relative error of multipliers and tangent, which is the distance between the cycle and the
-        orbit at which the last matrix was assembled, or the error that their correction leaves. nearby: the
-        last matrix of the workspace, assembled near `orbit`, with which the iteration begins, or None.
+        largest allowed relative error of multipliers and tangent. Estimates of this error: the distance of
+        the cycle from the orbit at which the last matrix was assembled, or the error that remains after a
+        correction. nearby: the last matrix of the workspace, assembled near `orbit`, with which the iteration
+        begins, or None.
         """
         matrix = nearby or BorderedMatrix(orbit, self.scale, workspace)
         distance_from_matrix_orbit = matrix.relative_distance_to_orbit(orbit) if nearby else 0.0
@@ -65,7 +67,7 @@ class BorderCondition:
         step = self._newton_step(matrix, orbit)
         for _ in range(ORBIT_NEWTON_SETTINGS.max_iterations):
             report()
-            change = self.relative_change_within_limit(orbit, step)
+            change = self.require_small_relative_change(orbit, step)
             orbit = moved_orbit(orbit, self.scale.parameter_name, step)
             distance_from_matrix_orbit = distance_from_matrix_orbit + change
             # There is no rate at the first step with a matrix.
@@ -102,7 +104,7 @@ class BorderCondition:
             return matrix.newton_step(self.border, residual)
         return matrix.newton_step_at_nearby_orbit(orbit, self.border, residual)
 
-    def relative_change_within_limit(self, orbit: Orbit, step: Array) -> float:
+    def require_small_relative_change(self, orbit: Orbit, step: Array) -> float:
         """Relative change of orbit and parameter in Newton's step `step`, (N + 1,); raises Unsolvable if
         this change is too large."""
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
@@ -114,9 +116,10 @@ class BorderCondition:
     def _with_accurate_linearisation(
         self, orbit: Orbit, matrix: BorderedMatrix, distance: float, max_error: float
     ) -> ConvergedOrbit | None:
-        """The solved `orbit` with tangent and multipliers of a relative error of at most `max_error`: those
-        of its last matrix, or corrected ones; None if the corrections do not converge. distance: relative
-        distance between the orbit and the orbit at which `matrix` was assembled."""
+        """The solved `orbit` with tangent and multipliers of a relative error of at most `max_error`, either
+        from `matrix` or corrected; None if the distance is too large for a correction, or if the corrections
+        do not converge. distance: relative distance between the orbit and the orbit at which `matrix` was
+        assembled."""
         if distance <= max_error:
             return ConvergedOrbit(orbit, matrix, distance)
         if distance > LINEARISATION_CORRECTION_SETTINGS.max_distance_from_matrix_orbit:

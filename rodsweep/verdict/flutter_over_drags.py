@@ -14,8 +14,8 @@ from .relative_load import SEARCH_END, SEARCH_ENDS_OF_VARYING_ARM, rod_with_drag
 SEARCH_REQUEST = ThresholdsRequest(F_max=SEARCH_END, accuracy=1e-6, certify=True, max_thresholds=1000)
 """Request for all thresholds of an arm, with relative accuracy 1e-6 and a proof that none is missing."""
 MIN_SEARCH_END_OVER_FLUTTER_AND_LOAD = 2.0
-"""The search for an arm that is not uniform or not of linear material is extended until its largest force is
-at least this number times the first flutter force and this number times the load."""
+"""For an arm that varies along its length, the end of the search moves through `SEARCH_ENDS_OF_VARYING_ARM`
+until it is at least this number times the first flutter force and this number times the load."""
 KINDS_USED_BY_VERDICT = (
     ThresholdKind.onset,
     ThresholdKind.hopf,
@@ -37,7 +37,7 @@ class ThresholdsWithDrag:
     @property
     def is_usable(self) -> bool:
         """Whether the search gave thresholds. The search may have ended early, the list may be incomplete,
-        and the thresholds may miss the accuracy; see `uncertainty_text`."""
+        and the thresholds may miss the accuracy; see `uncertainty_reason`."""
         return self.thresholds.status in (
             ThresholdStatus.ok,
             ThresholdStatus.ended_early,
@@ -46,7 +46,7 @@ class ThresholdsWithDrag:
         )
 
     @property
-    def uncertainty_text(self) -> str:
+    def uncertainty_reason(self) -> str:
         """Why usable thresholds are uncertain: a threshold of a kind in KINDS_USED_BY_VERDICT misses the
         accuracy, or the list is not proved complete; empty if the thresholds are certain."""
         search = self.thresholds
@@ -63,7 +63,7 @@ class ThresholdsWithDrag:
         """The threshold of the given kind at the smallest force; None if no threshold has this kind."""
         return next((c for c in self.thresholds.thresholds if c.kind == kind), None)
 
-    def first_frequency(self, kind: ThresholdKind) -> float | None:
+    def first_frequency_hz(self, kind: ThresholdKind) -> float | None:
         """Frequency, in Hz, at the first threshold of the given kind; None if no threshold has this kind."""
         threshold = self.first_threshold(kind)
         return None if threshold is None else abs(threshold.frequency) / (2 * pi * self.tau2)
@@ -117,14 +117,15 @@ class ThresholdsOverDrags:
 
     @property
     def failure_texts(self) -> list[str]:
-        """Distinct error messages of failed searches; to stop before the requested force is no failure."""
+        """Distinct error messages of failed searches; a search that stops before the requested force has not
+        failed."""
         failed_searches = [f.thresholds for f in self.by_drag if not f.is_usable]
         return sorted({thresholds.message or thresholds.status.sentence for thresholds in failed_searches})
 
     @property
-    def uncertainty_texts(self) -> list[str]:
+    def uncertainty_reasons(self) -> list[str]:
         """Distinct reasons for which thresholds, for some drags, are uncertain."""
-        return sorted({f.uncertainty_text for f in self.by_drag if f.is_usable} - {""})
+        return sorted({f.uncertainty_reason for f in self.by_drag if f.is_usable} - {""})
 
     @property
     def end(self) -> float:
@@ -138,14 +139,14 @@ class ThresholdsOverDrags:
 
     @property
     def second_flutter_force_range(self) -> RangeOverDrags | None:
-        """Range, over the drags, of the force at which the arm flutters again, in k3/L^2; None if it does not
-        for any drag."""
+        """Range, over the drags, of the force at which the arm flutters again, in k3/L^2; None if it flutters
+        again for no drag."""
         return range_over_drags([f.second_flutter_force for f in self.by_drag])
 
     def first_frequency_range(self, kind: ThresholdKind) -> RangeOverDrags | None:
         """Range, over the drags, of the frequency at the first threshold of the given kind, in Hz; None if no
         drag has such a threshold."""
-        return range_over_drags([f.first_frequency(kind) for f in self.by_drag])
+        return range_over_drags([f.first_frequency_hz(kind) for f in self.by_drag])
 
 
 def range_over_drags(values: list[float | None]) -> RangeOverDrags | None:
@@ -177,9 +178,8 @@ def thresholds_over_drags(arm: SlenderArm) -> ThresholdsOverDrags:
 def _first_search_end_and_thresholds(arm: SlenderArm, drag: Drag) -> tuple[float, ThresholdsWithDrag]:
     """Returns (end, thresholds): the largest force requested, and the thresholds up to this force. `end` is
     SEARCH_END for an arm that does not vary. For other arms, `end` is the first number of
-    SEARCH_ENDS_OF_VARYING_ARM that exceeds the first flutter force and a known load by at least the factor
-    MIN_SEARCH_END_OVER_FLUTTER_AND_LOAD, or before which the search ended; without such a number, the last
-    number."""
+    SEARCH_ENDS_OF_VARYING_ARM that is at least MIN_SEARCH_END_OVER_FLUTTER_AND_LOAD times the first flutter
+    force and a known load, or that the search did not reach; without such a number, the last number."""
     has_known_load = arm.load_name is not None and arm.load_over_flutter is None
     for end in SEARCH_ENDS_OF_VARYING_ARM if arm.geometry.varies_along_arm else (SEARCH_END,):
         thresholds = thresholds_with_drag(arm, drag, end)

@@ -35,7 +35,7 @@ class BoxSettings(KernelConstants):
     min_padding: float = 1e-6
     """Length added to both bounds of the box, in 1/tau2; far below |w| = 12 of a rod at rest."""
     relative_bound_excess: float = 0.01
-    """Relative excess of every bound, for the rounding errors of the bound itself."""
+    """Every bound is enlarged by this fraction, to cover the rounding errors of the bound itself."""
     max_D_deviation_from_one: float = 0.5
     """Bound of |D - 1| in the disc about w = 0. Any bound below 1 excludes zeros of D."""
 
@@ -43,7 +43,7 @@ class BoxSettings(KernelConstants):
 BOX_SETTINGS = BoxSettings()
 
 
-def eigenvalue_box(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
+def box_of_all_eigenvalues(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
     """Bounds (max Re w, max |Im w|), in 1/tau2, of all eigenvalues with Re w >= -depth, depth >= 0; inf if
     no bound exists."""
     return box_from_sqrt_frequency_bound(sqrt(frequency_bound(rod)), depth)
@@ -51,7 +51,7 @@ def eigenvalue_box(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
 
 @compiled
 def box_from_sqrt_frequency_bound(a: float, depth: float) -> tuple[float, float]:
-    """Bounds (max Re w, max |Im w|) of eigenvalues with Re w >= -depth; a: sqrt of `frequency_bound`."""
+    """Bounds (max Re w, max |Im w|) of all w with Re w >= -depth, in 1/tau2; a: sqrt of `frequency_bound`."""
     n = (a + sqrt(a * a + 4 * depth)) / 2
     # Without the padding, F = 0 would make the box empty.
     padding = BOX_SETTINGS.padding_over_depth * depth + BOX_SETTINGS.min_padding
@@ -69,7 +69,7 @@ def frequency_bound(rod: Rod) -> float:
     the shear stiffness) the larger entry of the maximum is minimised over rho; c2 gamma3 = 0 then gives no
     bound.
     """
-    drag = rod.c2 * rod.rotational_drag
+    drag = rod.c2 * rod.base_rotational_drag
     drag_term = abs(rod.F) * sqrt(drag)
     if rod.g >= 0:
         return rod.F**2 * rod.g / (rod.nu + drag_term)
@@ -150,8 +150,8 @@ def _zero_free_radius(radius: float, T: float, X: float, G: float, max_pull: flo
 
 
 def _D_distance_from_one_bound(radius: float, T: float, X: float, G: float, max_pull: float) -> float:
-    """An upper bound of |D(i eta) - 1| for |eta| <= r; inf where it would be too large to be useful. T, X, G:
-    bounds of c2 + gamma3, c2 gamma3 and |g nu|. max_pull: bound of -F g, at least 0."""
+    """An upper bound of |D(i eta) - 1| for |eta| <= `radius`, below exp(1); exp(1) or inf: no useful bound.
+    T, X, G: bounds of c2 + gamma3, c2 gamma3 and |g nu|. max_pull: bound of -F g, at least 0."""
     exponent = sqrt(max_pull + T * radius + 2 * sqrt(radius * (G + X * radius)))
     if exponent > 1 + sqrt(max_pull):
         return inf

@@ -25,7 +25,7 @@ def spectrum_mesh(rod: Rod, mode_count: int, accuracy: float) -> Elements:
     return Elements(equal_edges(resolution.element_count), resolution.order)
 
 
-def largest_first_mesh(
+def finest_initial_mesh(
     points: Points, mesh_of: Callable[[Rod], Elements], parameter_ends: Mapping[str, Array] | None = None
 ) -> Elements | None:
     """The initial mesh with the most nodes among sampled points of a sweep and the corners of its grid; None
@@ -39,7 +39,7 @@ def largest_first_mesh(
     rods = (
         rod
         for point_rod in _uncrushed_rods(points, sorted(indices))
-        for rod in _rods_at_parameter_ends(point_rod, parameter_ends or {})
+        for rod in _rods_at_range_corners(point_rod, parameter_ends or {})
     )
     return max(map(mesh_of, rods), key=lambda mesh: mesh.node_count, default=None)
 
@@ -52,7 +52,7 @@ def _uncrushed_rods(points: Points, indices: Iterable[int]) -> Iterator[Rod]:
             yield points.rod(index)
 
 
-def _rods_at_parameter_ends(rod: Rod, parameter_ends: Mapping[str, Array]) -> Iterator[Rod]:
+def _rods_at_range_corners(rod: Rod, parameter_ends: Mapping[str, Array]) -> Iterator[Rod]:
     """Yields the rod with every combination of the parameter values in `parameter_ends`, by name, (n,) each.
     A force is lowered to just below the crushing force. Combinations outside the model are omitted."""
     for values in product(*(list_of(column) for column in parameter_ends.values())):

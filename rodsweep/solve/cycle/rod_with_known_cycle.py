@@ -10,7 +10,7 @@ from .cycle_outcome import CycleRequest
 from .limit_cycle import solve_cycle
 from .status import CycleStatus
 
-REFERENCE_PERIOD = 0.04204870
+REFERENCE_ROD_PERIOD = 0.04204870
 """Period, in tau2, of the cycle of the reference rod with F, k1, k2, gamma3, gamma1 = 40, 1e4, 1e2, 1e-2, 1.
 An independent displacement-form code confirms all digits."""
 REFERENCE_REQUEST = CycleRequest(1e-3, 0.1, 1, 4, 1, 4, 50)
@@ -29,7 +29,7 @@ def warm_up() -> None:
     # The second solve loads the code for the continuation along a chain.
     if cycle.start_for_next_rod is not None:
         solve_cycle(replace(rod, F=1.01 * rod.F), request, cycle.start_for_next_rod, "F")
-    deviation = abs(cycle.measures.period / REFERENCE_PERIOD - 1)
+    deviation = abs(cycle.measures.period / REFERENCE_ROD_PERIOD - 1)
     is_reproduced = cycle.status == CycleStatus.cycle and deviation < request.accuracy
     options = user_options_text(CYCLE_OPTIONS_PREFIX)
     if options and not is_reproduced:
