@@ -37,6 +37,13 @@ def uncrushed_ranges(view: ResultView, rods: Iterable[int]) -> list[ParameterRan
     return [uncrushed_interval(material, rod, (parameter, range_start, range_end)) for rod in rods_values]
 
 
+def crushing_forces(view: ResultView) -> Array:
+    """Force that crushes the thinnest section of each rod of a file, in k3/L^2, (points,); inf for rubber."""
+    columns = view.point_columns
+    tapers = columns.get("taper", np.ones_like(columns["k1"]))
+    return np.asarray(columns["k1"] * material_of_rods(view).crushing_forces_over_k1(tapers))
+
+
 def crushing_ratio(view: ResultView, parameters: PlaneParameters, x: Array, y: Array) -> Array:
     """Force divided by the crushing force (zero stretch), at the points x, y of the plane of a phase diagram;
     0 if no force crushes the rod. x, y: values of the parameters, of shapes that broadcast."""

@@ -83,7 +83,7 @@ class ArmElementSettings(KernelConstants):
     def __post_init__(self) -> None:
         KernelConstants.__post_init__(self)
         if self.stage_count % 4:
-            raise ValueError(f"stages = {self.stage_count} is not a multiple of 4")
+            raise ValueError(f"stage_count = {self.stage_count} is not a multiple of 4")
 
 
 ARM_ELEMENT_SETTINGS = ArmElementSettings()

@@ -11,6 +11,7 @@ from ....model.arm.quantities import LOAD_SCALE_NAME_BY_LOAD, UNITS_AND_EXAMPLES
 from ....results.layouts.si_variables import VALIDITY_VARIABLES
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import counted
+from ...crushing import crushing_forces
 from ..selection import PointSelection
 from .arm_texts import errors_in_si, range_text_in_printing_unit
 from .load_lines import (
@@ -154,10 +155,9 @@ def _first_hopf_lines_of_rows(arms: PointSelection) -> TextLines:
     view = arms.view
     if "F" in view.parameters:
         return []
-    scale = np.broadcast_to(view.variables[LOAD_SCALE_NAME_BY_LOAD[view.load_kind]], arms.mask.shape)[
-        arms.mask
-    ]
-    last_force = np.minimum(view.variables["F"][-1], view.point_columns["k1"][arms.mask.ravel()])
+    name = LOAD_SCALE_NAME_BY_LOAD[view.load_kind]
+    scale = np.broadcast_to(view.variables[name], arms.mask.shape)[arms.mask]
+    last_force = np.minimum(view.variables["F"][-1], crushing_forces(view)[arms.mask.ravel()])
     forces = _values_at_first_hopf_point(arms, "crossing_at")
     return _flutter_lines(
         arms, forces * scale, last_force * scale, _values_at_first_hopf_point(arms, "crossing_frequency_hz")

@@ -9,7 +9,7 @@ from ....model.arm.neglected import COMPRESSION_LIMIT, DOUBTFUL_RATIO
 from ....model.arm.quantities import LOAD_SCALE_NAME_BY_LOAD, UNITS_AND_EXAMPLES
 from ....results.file.view import ResultView
 from ....wording import two_significant_digits
-from ...crushing import material_of_rods
+from ...crushing import crushing_forces
 from ..selection import PointSelection
 from .arm_texts import arm_quantity_ranges_text, range_text_in_printing_unit, varied_arm_quantities
 
@@ -105,10 +105,7 @@ def compression_lines(rows: PointSelection) -> list[str]:
     view = rows.view
     if "F" in view.parameters or "F" not in view.variables or not rows.count:
         return []  # no rows along F
-    columns = view.point_columns
-    tapers = columns.get("taper", np.ones_like(columns["k1"]))
-    largest = COMPRESSION_LIMIT * columns["k1"] * material_of_rods(view).crushing_forces_over_k1(tapers)
-    limits = largest[rows.mask.ravel()]
+    limits = COMPRESSION_LIMIT * crushing_forces(view)[rows.mask.ravel()]
     kind = view.load_kind
     scale = np.broadcast_to(view.variables[LOAD_SCALE_NAME_BY_LOAD[kind]], rows.mask.shape)[rows.mask]
     lines = []
