@@ -150,8 +150,8 @@ def _axis_from_range(value: dict) -> Axis:
         raise ValueError(f"start = {start:g} and stop = {stop:g} do not make {num} increasing values")
     if num > 1 and (stop - start) / num <= 4e-16 * max(abs(start), abs(stop)) or stop - start == inf:
         raise ValueError(
-            f"{num} values from {start!r} to {stop!r} cannot be distinguished in floating-point numbers; "
-            "use fewer values"
+            f"floating-point numbers cannot hold {num} values from {start!r} to {stop!r}; use fewer values "
+            "or another range"
         )
     if spacing == "log" and start <= 0:
         raise ValueError(f"log spacing needs start above 0, not {start:g}")

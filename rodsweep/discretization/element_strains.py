@@ -61,11 +61,11 @@ def write_element_strain_rates(
     S: Array, rates: Array, rod: NodalRod, element_nodes: IntegerArray, out: Array
 ) -> None:
     """Writes derivatives of the strains (with respect to time or along a variation) at the nodes of every
-    element into out, (3, m, nodes + elements).
+    element into out, (3, m, nodes + elements); at a jump, the derivatives on both sides.
 
     S: stresses of m states at all nodes, (3, m, nodes + 1). rates: derivatives of the strains at all nodes,
-    and of the mean strain at jumps, (3, m, nodes + 1). element_nodes: indices of the nodes of every
-    element, (nodes + elements,).
+    at a jump the derivative of the mean strain, (3, m, nodes + 1). element_nodes: indices of the nodes of
+    every element, (nodes + elements,).
     """
     for a in range(len(rates)):
         for k in range(rates.shape[1]):

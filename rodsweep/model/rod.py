@@ -156,7 +156,7 @@ class Rod:
         return float(PARAMETERS[parameter_name].coordinate(getattr(self, parameter_name)))
 
     def with_coordinate(self, parameter_name: str, coordinate: float) -> "Rod":
-        """The rod with a new coordinate of one parameter. Raises ValueError for an invalid coordinate."""
+        """The rod with a new `coordinate` (1/k for a stiffness k) of a parameter; ValueError if invalid."""
         return self.with_values(**{parameter_name: PARAMETERS[parameter_name].value(coordinate)})
 
     def with_values(self, **values: float) -> "Rod":

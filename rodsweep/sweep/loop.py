@@ -135,8 +135,8 @@ class _RankLoop:
         )
 
     def _solve_to_first_unsolved(self, chunk: IndexRange) -> int:
-        """Solves the items of a chunk in order; returns the number of the first unsolved item. Later items
-        stay unsolved after a stop request, or if the chunk takes too long."""
+        """Solves the items of a chunk in order; returns the number of the first unsolved item, `chunk[1]` if
+        there is none. Items stay unsolved after a stop request, or if the chunk takes too long."""
         deadline = time.monotonic() + MAX_CHUNK_TIME_OVER_PLANNED_TIME * chunk_seconds(self.ranks.size)
         item = chunk[0]
         points_before = self.solved_points

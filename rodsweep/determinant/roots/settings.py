@@ -59,7 +59,7 @@ class RootNewtonSettings(KernelConstants):
     max_steps_to_eigenvalue: int = 12
     """Maximum number of Newton steps to an eigenvalue."""
     max_step_over_expected_value: float = 20.0
-    """Newton's method for a crossing fails after a step of at least this times the expected eta or p."""
+    """Newton's method for a crossing fails after a step of this times the expected size of eta or p."""
     converged_step_in_rounding_errors: float = 4.0
     """Newton's method has converged if |step| <= this number times the rounding error of the zero."""
     relative_jacobian_difference_step: float = 1e-5

@@ -77,7 +77,7 @@ class BranchSearch:
         self._add_messages_on_shared_range_ends()
 
     def follow_from_beyond_into_range(self) -> None:
-        """Follows branches beyond the range, in `regions`, and branches that enter the range from there."""
+        """Follows branches from the range into `regions`, and branches from `regions` into the range."""
         for region in self.regions:
             # The work allowed beyond the range depends on the work that the branches within took.
             region.set_work_limit()

@@ -166,8 +166,8 @@ def _tangent_towards_larger_cycles(orbit: Orbit, name: str, limits: BranchLimits
 
 
 def _cycle_behind_orbit(tangent: _Tangent, distance: float, limits: BranchLimits) -> BranchCycle:
-    """The cycle of a branch at the arc length `distance` behind the orbit of `tangent`, with measured errors;
-    raises Unsolvable."""
+    """The cycle of a branch at the arc length `distance` from the orbit of `tangent`, in the direction
+    opposite to `tangent`, with measured errors; raises Unsolvable."""
     accuracy = limits.accuracy
     condition = BorderCondition.at_arc_length(tangent.scale, tangent.components, tangent.orbit, -distance)
     predicted = moved_orbit(

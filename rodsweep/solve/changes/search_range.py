@@ -94,8 +94,8 @@ class IntervalQueue:
         self.end = SearchEnd(p, reason)
 
     def limit_search_to_left_half(self, interval: tuple[float, float], reason: str) -> None:
-        """Ends the search at the start of the current `interval`, whose search failed; only its left half is
-        searched next, unless `max_halvings_after_failure` is reached. reason: why the search failed."""
+        """Drops all intervals after the start of the current `interval`, whose search failed. Only its left
+        half is still searched, at most `max_halvings_after_failure` times. reason: why the search failed."""
         self._queue.clear()
         self._unsearched_end = interval[1]
         self.end = SearchEnd(interval[0], reason)

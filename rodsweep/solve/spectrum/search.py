@@ -162,8 +162,8 @@ class SpectrumSearch:
 
     def request_decaying_modes(self, candidates: Candidates) -> None:
         """Requests eigenvalues left of `candidates`, which all grow, because a count also needs decaying
-        modes. Moves the shift to the left or, if the last shift or mesh gave no further eigenvalue, requests
-        more eigenvalues. Refines the mesh if fewer were found than requested."""
+        modes. If `can_unite`, moves the shift to the left; otherwise, or if the last shift or mesh gave no
+        further eigenvalue, requests more of them. Refines the mesh if fewer were found than requested."""
         self.is_leader_unresolved = True
         found_count = len(candidates.roots.w)
         if found_count < self.requested_count:

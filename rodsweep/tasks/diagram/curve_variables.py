@@ -37,8 +37,8 @@ if TYPE_CHECKING:
 def fold_curve_extremum_values(
     traced: "TracedCurves[SpecialPointCurve]", plane: tuple[str, str]
 ) -> list[FilledVariable]:
-    """Variables of the extrema of the row parameter along the curves `traced`, located or not; [] if there
-    are none. plane: (parameter along a row, parameter that differs between rows)."""
+    """Variables of the located extrema of the row parameter along the curves `traced`, and number of others;
+    [] without extrema. plane: (parameter along a row, parameter that differs between rows)."""
     points = [(number, p) for number, curve in enumerate(traced.curves, 1) for p in curve.points]
     rows = [
         (number, p.parameter_value, p.row_parameter_value, p.error, row_error)

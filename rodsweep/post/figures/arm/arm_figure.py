@@ -53,8 +53,8 @@ MAP_HATCH_COLOUR = "0.35"
 
 def draw_arm_figure(request: FigureRequest) -> str:
     """Draws the main results of a task over one or two quantities of an arm, with a panel of lines or a map
-    for each result; returns a sentence. Raises InputError for options that the task does not have, and if
-    nothing can be drawn."""
+    for each result; returns a description of the figure. Raises InputError for options that the task does not
+    have, and if nothing can be drawn."""
     view = replace(request, what=None).require_single_view()
     names = _quantities_on_axes(view)
     indices = {
@@ -110,8 +110,8 @@ def _omitted_axes_clause(view: ResultView, indices: dict[str, int]) -> str:
 
 
 def can_draw_arm_figure(request: FigureRequest) -> bool:
-    """Whether `draw_arm_figure` draws the requested figure: quantities of the arm vary in the only file, and
-    the user has not chosen another kind of figure."""
+    """Whether `draw_arm_figure` draws the requested figure: quantities of the arm vary in the only file, its
+    task has such figures, and the user has not chosen points, roots or another kind of figure."""
     view = request.views[0]
     has_other_options = request.what not in (None, *ARM_MAP_FIGURE_KINDS) or request.points or request.roots
     has_map = any(len(view.variables[name]) > 1 for name in view.arm_axes)

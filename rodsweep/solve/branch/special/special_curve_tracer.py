@@ -44,7 +44,7 @@ class SpecialCurveTracer:
     values_of_rows_with_known_branches: Mapping[int, float] = field(default_factory=dict)
     """Value of the row parameter by index of the row, for rows whose branches are all known."""
     special_points_not_to_trace: Sequence[RowSpecialPoint] = ()
-    """Further special points of the rows, through which no curve is traced."""
+    """Further special points of the rows: not traced from, but recognised if they lie on a traced curve."""
     branch_starts_by_row: Mapping[int, tuple[SpecialPoint, ...]] = field(default_factory=dict)
     """Special points from which branches of a row are followed in addition to its branches from Hopf points,
     by index of the row."""

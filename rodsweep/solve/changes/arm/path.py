@@ -1,4 +1,4 @@
-"""The transverse eigenvalue problem along a path of nonuniform arms, and the choice for any path."""
+"""Transverse eigenvalue problem along a path of nonuniform arms; choice of the problem for any path."""
 
 from contextlib import suppress
 from dataclasses import dataclass, replace

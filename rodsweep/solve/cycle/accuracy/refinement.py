@@ -152,7 +152,7 @@ def _cycle_with_predicted_errors(
         REFINEMENT_SETTINGS.max_prediction_distance_per_accuracy * accuracy,
         REFINEMENT_SETTINGS.always_accepted_prediction_distance,
     ):
-        raise Unsolvable("coarser meshes do not predict the cycle")
+        raise Unsolvable("the cycle is far from its prediction by coarser meshes")
     solved = newton_step_if_matrix_distant(
         solved, min(accuracy, REFINEMENT_SETTINGS.max_distance_from_matrix_orbit)
     )

@@ -54,7 +54,7 @@ def require_enough_stages(s: int) -> None:
 
 
 def block_count(s: int) -> int:
-    """Number of blocks of an interval of s stages, at least `MIN_STAGE_COUNT`."""
+    """Number of blocks of an interval of s stages; s must be at least `MIN_STAGE_COUNT`."""
     return int(s + (s - 2) ** 2)
 
 

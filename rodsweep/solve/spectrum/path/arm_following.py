@@ -82,8 +82,8 @@ ARM_FOLLOWING_SETTINGS = ArmFollowingSettings()
 
 PropagatorsWithPathSlopes = tuple[float, Array, Array, Array]
 """(bound W of |w|, propagators valid for |w| <= W, derivatives of the propagators with respect to the path
-variable p, sizes of their entries); the first two arrays: (elements, terms, PROPAGATOR_LENGTH), the third as
-`ArmFamily.reference_entry_sizes`."""
+variable p, `reference_entry_sizes` of the propagators as in `ArmFamily`). Propagators and derivatives:
+(elements, terms, PROPAGATOR_LENGTH)."""
 
 
 @compiled
