@@ -205,6 +205,6 @@ def test_a_stored_motion_does_not_leave_the_straight_state_by_a_jump(F, why):
 
 
 def test_a_stretch_that_has_not_relaxed_is_named():
-    c = ended(Rod(F=20.0, k1=100.0, k2=1e2, gamma3=1e-3, gamma1=1e6), 0.8)
+    c = ended(Rod(F=20.0, k1=100.0, k2=1e2, gamma3=1e-3, gamma1=1e7), 0.8)
     assert c.status == CycleStatus.not_settled
     assert "the stretch of the rod has not relaxed" in c.message
