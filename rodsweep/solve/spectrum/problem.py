@@ -131,7 +131,7 @@ class UniformProblem(TransverseProblem):
         self.has_eigenvalue_bound = isfinite(self._sqrt_frequency_bound)
 
     def mesh_for(self, mode_count: int, accuracy: float) -> Resolution:
-        return first_resolution(self.rod, mode_count, accuracy)
+        return first_resolution(self.rod, mode_count, accuracy, self.largest_growing_wave_number)
 
     def finer_mesh_for_waves(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
         """The mesh for the largest wave number of `waves`, (modes,), and the relative accuracy `accuracy`; at
