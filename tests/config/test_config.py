@@ -134,7 +134,7 @@ BROKEN = {
     "%YAML 1.1\n---\na: 1": "directives",
     'task: spectrum\nparameters: {points: "a\\0b"}': "printed",
     "task: spectrum\n1: 2\nparameters: {F: 1, k1: 9, k2: 1, gamma3: 0}": "keys are words",
-    "task: spectrum\nparameters: {F: {start: 1, stop: 1.0000000000000004, num: 99}}": "distinguished",
+    "task: spectrum\nparameters: {F: {start: 1, stop: 1.0000000000000004, num: 99}}": "cannot hold 99 values",
     "[" * 100: "nested",
     "a: " + "[" * 5000: "nested",
     "\t- x": "YAML",
