@@ -45,14 +45,14 @@ def stretch_shear_and_drag_rows(columns: Mapping[str, np.ndarray]) -> list[Check
 
     columns: values of the rods' parameters by name, arrays of any shape.
     """
-    has_axial_drag = bool((columns["gamma3"] > 0).any())
+    has_rotational_drag = bool((columns["gamma3"] > 0).any())
     return [
         *(
             _deformation_row(parameter, columns[parameter.name])
             for parameter in PARAMETERS.values()
             if parameter.rigid_adjective
         ),
-        ("rotational drag", has_axial_drag, "gamma3 > 0" if has_axial_drag else "gamma3 = 0"),
+        ("rotational drag", has_rotational_drag, "gamma3 > 0" if has_rotational_drag else "gamma3 = 0"),
     ]
 
 

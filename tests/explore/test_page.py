@@ -1,6 +1,7 @@
 """The page of `explore` without a browser: what each change asks, and what each answer shows."""
 
 import re
+from dataclasses import replace
 from html import unescape
 
 import numpy as np
@@ -29,7 +30,13 @@ from rodsweep.explore.slider_scales import PictureAxis
 from rodsweep.explore.solving.diagram_curves_and_unstable_counts import DiagramCurve
 from rodsweep.explore.solving.diagrams import CRUSHED_UNSTABLE_COUNT, UNKNOWN_UNSTABLE_COUNT
 from rodsweep.explore.solving.request_inputs import REQUEST_KINDS_AFTER_EVERY_CHANGE
-from rodsweep.explore.solving.requests import Reply, SolveRequest, answer_to, answer_variables
+from rodsweep.explore.solving.requests import (
+    Reply,
+    SolveRequest,
+    answer_to,
+    answer_variables,
+    growth_answer,
+)
 from rodsweep.explore.templates_and_texts import SOLVE_STOPPED_SENTENCE, template_text
 from rodsweep.verdict import relative_load
 
@@ -99,6 +106,14 @@ def test_pictures_and_numbers_are_those_of_the_solver():
     nodes = int(shapes["number"][0])
     assert np.max(np.reshape(shapes["y"], (-1, nodes))[:, -1]) == pytest.approx(cycle.tip_y_max, rel=1e-2)
     assert page.contents.sign.text == ""
+
+
+def test_growth_rates_of_rubber_reach_beyond_the_force_that_crushes_linear_material():
+    weak = PageState().with_values(F="10", k1="20")
+    assert growth_answer(weak)["F"][-1] < 20
+    rubber = growth_answer(replace(weak, law="fixed", F_max="60"))
+    assert rubber["F"][-1] == 60
+    assert np.isfinite(rubber["growth_rate"][:, 0]).all()
 
 
 def test_a_change_of_the_load_asks_no_thresholds_again():

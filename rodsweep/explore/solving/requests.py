@@ -83,16 +83,18 @@ def thresholds_answer(state: PageState) -> AnswerVariables:
 
 
 def growth_answer(state: PageState) -> AnswerVariables:
-    """Growth rates of the leading modes along F, up to the largest force or just below the crushing force of
-    linear material (zero stretch), as variables by name. F: forces in k3/L^2, (n,). growth_rate: rates in
-    `unit`, (n, modes). unit: "1/tau2" for a rod, "1/s" for an arm. unstable_count: numbers of unstable modes,
-    (n,)."""
+    """Growth rates of the leading modes along F, as variables by name. F ends at the largest force, for
+    linear material at most just below the crushing force (zero stretch). F: forces in k3/L^2, (n,).
+    growth_rate: rates in `unit`, (n, modes). unit: "1/tau2" for a rod, "1/s" for an arm. unstable_count:
+    numbers of unstable modes, (n,)."""
     rod_or_arm = state.rod_or_arm()
     tau2, unit = (rod_or_arm.tau2, "1/s") if isinstance(rod_or_arm, Arm) else (1.0, "1/tau2")
     rod = dimensionless_parameters_of(rod_or_arm)
     keywords: dict[str, Any] = {name: rod[name] for name in ("k1", "k2", "gamma3", "taper") if name in rod}
     keywords |= {"material": MATERIAL_SECTION_BY_LAW[state.law]} if MATERIAL_SECTION_BY_LAW[state.law] else {}
-    F_max = min(state.largest_force(), MAX_GROWTH_TO_CRUSHING_FORCE_RATIO * crushing_force(rod))
+    F_max = state.largest_force()
+    if state.law == "linear":
+        F_max = min(F_max, MAX_GROWTH_TO_CRUSHING_FORCE_RATIO * crushing_force(rod))
     F = np.linspace(0, F_max, GROWTH_FORCE_COUNT)
     data = sweep("spectrum", F=F, **keywords, certify=False, progress=False)
     rates = data["growth_rate"].values.reshape(GROWTH_FORCE_COUNT, -1) / tau2
