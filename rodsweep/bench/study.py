@@ -25,11 +25,10 @@ after the previous run."""
 
 @dataclass(frozen=True, slots=True)
 class TimedMethod:
-    """A method at one setting that takes part in a race. method, setting: names in the tables.
+    """A method at one setting that is compared with other methods. method, setting: names in the tables.
 
     group: name of a group of methods, which have the same colour in the figure. run: function (case) ->
-    result. is_slow: whether the function is run only once, instead of in every round.
-    """
+    result. is_slow: whether the function is run only once, instead of in every round."""
 
     method: str
     setting: str
@@ -46,8 +45,7 @@ class Measurement:
     seconds: median time of the rounds, in s: processor time, or clock time in the benchmark of sweeps. error:
     relative error; nan if there is no error to measure, inf if the method failed. failure: reason for the
     failure. least_seconds: minimum time of the rounds, in s, which depends less on other programs.
-    extra_columns: further numbers by name.
-    """
+    extra_columns: further numbers by name."""
 
     case: str
     method: str
@@ -66,8 +64,7 @@ class BenchmarkReport:
 
     text: report in Markdown. measurements: measurements in the figure. run_noun: noun for a run, as in "ms a
     point". target_error: error at which methods are compared. undrawn_measurements: further measurements,
-    which are only in the file.
-    """
+    which are only in the file."""
 
     name: str
     """Name of the study, as in `rodsweep bench NAME`."""
@@ -185,15 +182,17 @@ def measure_case(
     round_count: int,
     measure_error: ErrorMeasuringFunction,
 ) -> list[Measurement]:
-    """Measurements of all contenders on one case, timed in turn. measure_error: function from a method's
-    result to the fields of `Measurement`."""
+    """Measurements of all methods `contenders` on one case, timed in turn. name: name of the case.
+    round_count: number of timed runs of each method; a slow method runs only once. measure_error: function
+    from a method's result to the fields of `Measurement`."""
     return measure_cases([CaseWithErrorMeasure(name, case, measure_error)], contenders, round_count)
 
 
 def measure_cases(
     cases: Sequence[CaseWithErrorMeasure], contenders: Sequence[TimedMethod], round_count: int
 ) -> list[Measurement]:
-    """Measurements of all contenders on all cases `cases`, timed in turn."""
+    """Measurements of all methods `contenders` on all cases `cases`, timed in turn. round_count: number of
+    timed runs of each method on a case; a slow method runs only once."""
     pairs = [(entry, contender) for entry in cases for contender in contenders]
     runs = [partial(result_or_error, contender.run, entry.case) for entry, contender in pairs]
     times = time_runs(runs, [0 if contender.is_slow else round_count for _, contender in pairs])
@@ -211,8 +210,8 @@ def measure_cases(
 def grouped_by_fields(
     items: Iterable[MethodOrMeasurement], *names: str
 ) -> dict[tuple[str, ...], list[MethodOrMeasurement]]:
-    """Lists of contenders or measurements with equal values of the fields `names`, by these values, in order
-    of first appearance."""
+    """Lists of methods or measurements with equal values of the fields `names`, by these values, in order of
+    first appearance."""
     groups: dict[tuple[str, ...], list[MethodOrMeasurement]] = {}
     for item in items:
         groups.setdefault(tuple(getattr(item, name) for name in names), []).append(item)
@@ -220,7 +219,8 @@ def grouped_by_fields(
 
 
 def every_nth_setting(contenders: Iterable[TimedMethod], stride: int) -> list[TimedMethod]:
-    """Contenders with every n-th setting of each method, from the first, for a quick run. stride: n."""
+    """The methods with every n-th setting of each method, from the first setting, for a quick run.
+    contenders: methods with all settings. stride: n."""
     return [c for settings in grouped_by_fields(contenders, "method").values() for c in settings[::stride]]
 
 

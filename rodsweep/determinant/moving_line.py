@@ -37,7 +37,8 @@ class MovingLineSettings(KernelConstants):
     """Settings for the rectangles that prove that no eigenvalue crosses a moving line."""
 
     first_half_height_over_line_distance: float = 0.35
-    """Half-height (in y) of the first rectangle over the line's largest distance from the axis Re w = 0."""
+    """Half-height (in y) of the first rectangle, divided by the largest distance of the line from the
+    imaginary axis."""
     half_height_growth_factor: float = 1.6
     """After a proved rectangle, the half-height of the next rectangle is larger by this factor."""
     max_half_height_over_w: float = 0.6
@@ -101,7 +102,8 @@ def rectangle_proof_and_costs(
     line_slope: float,
 ) -> tuple[bool, float, float]:
     """Returns (proved, cost in y, cost in p). proved: whether D is proved to have no zero on the rectangle
-    about w = l(p) + i y; cost: see `covering.box_outcome_and_costs`.
+    about w = l(p) + i y. cost: change of the exponents of D across an unproved rectangle in y or in p, 0 for
+    a proved one.
 
     centre_end: p, coefficients and line at the centre. direction: d(F, nu, c2, gamma3)/dp. half_widths:
     half-widths of the rectangle in y and in p. line_slope: dl/dp. Raises ValueError for a half-width that is

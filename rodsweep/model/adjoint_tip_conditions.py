@@ -1,9 +1,9 @@
 """The adjoint L+ of the transverse operator L, and the Hermitian part (L + L+)/2: end conditions at the tip.
 
-Appendix B: in the Gamma inner product (psi, xi) = int psi_y* y + gamma3 psi_theta* theta, with xi =
-(y, theta), L+ has the equations of L, with psi(0) = 0 and (K D psi + ad*_psi Sigma0)(1) = 0. Since Sigma0 =
-(-F, 0, 0) has ad*_psi Sigma0 = (0, -F Theta+, F Y+), the transverse block reads as follows. The shear force
-s+ is an additional unknown, so that no stiffness appears.
+Appendix B: in the Gamma inner product (psi, xi) = int psi_y* y + gamma3 psi_theta* theta, with xi = (y,
+theta), L+ has the equations of L, with psi(0) = 0 and (K D psi + ad*_psi Sigma0)(1) = 0. Since Sigma0 = (-F,
+0, 0) has ad*_psi Sigma0 = (0, -F Theta+, F Y+), the transverse block reads as follows. The shear force s+ is
+an additional unknown, so that no stiffness appears; g = nu + F c2.
 
     w y+          = s+' - F theta+'
     w gamma3 th+  = theta+'' + g s+
@@ -49,7 +49,7 @@ quotient loses digits."""
 
 def tip_layer_factor(rod: Rod) -> float:
     """T = tanh(kappa)/kappa of the boundary layer of theta at the tip of a uniform rod with gamma3 = 0 < c2.
-    kappa^2 = g nu/c2. T = 0 for all other rods, which have no such layer."""
+    kappa^2 = g nu/c2, g = nu + F c2. T = 0 for all other rods, which have no such layer."""
     # With rotational drag theta has its own time derivative, and without shear it is no unknown of its own.
     if rod.base_rotational_drag > 0 or rod.c2 == 0:
         return 0.0

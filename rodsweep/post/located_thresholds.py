@@ -1,5 +1,5 @@
 """Thresholds of the straight rod (onsets of oscillation and changes of stability) along a line of points of a
-result file.
+result file, that is, of points that differ in one parameter only.
 
 The thresholds that the task located are read from the file; nothing is solved or interpolated here. Any other
 change of stability is bracketed by two points of the file.
@@ -124,20 +124,22 @@ class StoredThresholds:
                 self.thresholds_by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
 
     def thresholds_up_to_end(self, line: ParameterLine) -> list[LocatedThreshold | BracketedThreshold]:
-        """Thresholds from the start of the search to the largest parameter value of a line of points."""
+        """Thresholds from the start of the search to the largest parameter value of `line`, a line of points
+        that differ in one parameter only."""
         return sorted(
             {*self.thresholds_on_line(line), *self._located_between(line, -inf)}, key=lowest_position
         )
 
     def _located_between(self, line: ParameterLine, low: float) -> list[LocatedThreshold]:
-        """Located thresholds between the parameter value `low` and the largest parameter value of a line."""
+        """Located thresholds between the parameter value `low` and the largest parameter value of `line`, for
+        the other parameters of this line."""
         rod = tuple(line.other_parameters[other_parameter] for other_parameter in self.other_parameters)
         high = float(line.values.max(initial=-inf))
         return [point for point in self.thresholds_by_rod.get(rod, []) if _lies_between(point, low, high)]
 
     def thresholds_on_line(self, line: ParameterLine) -> list[LocatedThreshold | BracketedThreshold]:
-        """Thresholds on a line of points, in increasing order of the parameter; an empty list for a line
-        without points.
+        """Thresholds on a line of points, which differ in one parameter only, by increasing parameter; an
+        empty list for a line without points.
 
         Two neighbouring points bracket a change of stability that a failed search did not locate, if their
         growth rates differ in sign and the number of located changes of stability between them is even.

@@ -10,7 +10,8 @@ included. The module reads no clock: the caller passes all times.
 from math import exp
 
 SKIPPED_POINT_FRACTION_FOR_PACE = 0.5
-"""The time per point is measured after this fraction of the points that are finished now."""
+"""The time per point is measured over the points that were finished last; this fraction of all points
+finished so far is skipped, because the first points have other costs."""
 MIN_POINTS_FOR_PACE = 2
 """Minimum number of points finished after the first record; with fewer points there is no time per point."""
 MIN_FRACTION_SUM_OF_UNFINISHED = 0.1

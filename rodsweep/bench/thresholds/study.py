@@ -1,8 +1,8 @@
 """The thresholds benchmark: first onset and first Hopf point, with errors relative to values of 30 digits.
 
 rodsweep finds all thresholds of a rod and can prove the list complete; peers find only the first onset or the
-first Hopf point. The contenders of the races ONSET and HOPF are functions of a `ThresholdCase` that return a
-`FirstThreshold`.
+first Hopf point. The compared methods are functions of a `ThresholdCase` that return a `FirstThreshold`; the
+comparisons for the two thresholds are called ONSET and HOPF.
 """
 
 from collections.abc import Iterable, Sequence
@@ -28,8 +28,8 @@ from ..study import (
 )
 
 ONSET, HOPF = "onset", "hopf"
-"""Kinds of thresholds, which are also names of the races, of fields of `ThresholdCase`, and of kinds in
-rodsweep's results."""
+"""Kinds of thresholds, which are also names of the two comparisons of methods, of fields of `ThresholdCase`,
+and of kinds in rodsweep's results."""
 MIN_ERROR_OF_OTHER_THRESHOLD = 0.3
 """A computed threshold with at least this relative error is a different threshold of the rod, and the exact
 threshold was missed."""
@@ -157,8 +157,8 @@ def run_thresholds_study(quick: bool, peers: PeerContribution) -> BenchmarkRepor
 
 
 def contenders(threshold_kind: str) -> list[TimedMethod]:
-    """Contenders of the race for the threshold `threshold_kind`: rodsweep with and without its proof of
-    completeness."""
+    """rodsweep's methods in the comparison for the threshold `threshold_kind`, ONSET or HOPF: with and
+    without its proof of completeness."""
     runs = {
         setting: partial(rodsweep_threshold, threshold_kind, proves)
         for setting, proves in CERTIFY_BY_SETTING_NAME.items()
@@ -184,8 +184,9 @@ def rodsweep_threshold(threshold_kind: str, certify: bool, case: ThresholdCase) 
 def measure_rods(
     threshold_kind: str, cases: Iterable[ThresholdCase], contenders: Sequence[TimedMethod], round_count: int
 ) -> list[Measurement]:
-    """Measurements of the contenders `contenders`, which find the threshold `threshold_kind`, on each rod.
-    threshold_kind: ONSET or HOPF."""
+    """Measurements of the methods `contenders`, which find the threshold `threshold_kind`, ONSET or HOPF, on
+    each of the rods `cases`. round_count: number of timed runs of each method on a rod; a slow method runs
+    only once."""
     measurements = []
     for case in cases:
         name = f"{case.name}, {THRESHOLD_KIND_NAMES[threshold_kind]}"

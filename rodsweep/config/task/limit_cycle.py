@@ -142,7 +142,8 @@ class LimitCycleConfig(Config):
             )
 
     def _require_chain_parameter(self) -> None:
-        """Raises ValueError if no axis changes only the parameter along which chains of cycles go."""
+        """Raises ValueError unless an axis changes only the parameter `chain_parameter`, along which the
+        cycle of one point is the initial guess for the next."""
         names = self.parameters.sizes_of_single_parameter_axes
         parameter = self.chain_parameter
         if parameter in names:

@@ -115,8 +115,8 @@ class PhaseDiagramConfig(LinearConfig):
 
     @property
     def settings_of_results(self) -> dict[str, Any]:
-        """`Config.settings_of_results`, with the parameter values along a row and, for boundary curves, the
-        names of the logarithmic axes."""
+        """All settings on which the results depend, as in `Config.settings_of_results`, with the parameter
+        values along a row and, for boundary curves, the names of the logarithmic axes."""
         settings = super().settings_of_results
         axes = self.parameters.axes
         line_parameter = self.plane_parameters[0]

@@ -28,7 +28,8 @@ from .newton import (
 )
 
 UNRESOLVED_END_WAVE_NUMBERS: Array = np.full(2, -math.inf)
-"""Largest wave numbers at the ends of an arm for a mesh that resolves waves by their mean only, (2,)."""
+"""Default of `max_end_q`, (2,): no wave number is resolved at an end of the arm beyond what `max_q`, the
+bound of the mean wave number, allows."""
 
 
 def refine_mesh_eigenvalues(
@@ -99,8 +100,9 @@ def _guesses_in_box(mesh_w: Complex, determinant: ArmDeterminant, hull: Eigenval
 def _resolved_guesses(
     guesses: list[_Guess], determinant: ArmDeterminant, max_q: float, max_end_q: Array
 ) -> list[_Guess]:
-    """The guesses whose wave number is at most `max_q` in the mean or, where an eigenfunction is confined to
-    an end of the arm, at most `max_end_q`, (2,), at the clamp or at the tip."""
+    """The guesses that the mesh resolves: either the mean of |q| along the arm is at most `max_q`, or the
+    wave number at the clamp or at the tip, where an eigenfunction may be confined, is at most max_end_q[0] or
+    max_end_q[1]."""
     rod = determinant.rod
     resolved = []
     for guess in guesses:
@@ -119,8 +121,8 @@ def _roots_with_errors(
     determinant: ArmDeterminant,
     unmatched_mesh_eigenvalue_count: int,
 ) -> RootsOfD:
-    """The `RootsOfD` of the sorted roots `located`, each refined from the guess at the same place of
-    `guesses`."""
+    """The `RootsOfD` of the roots `located`. guesses[i]: the guess from which located[i] was refined.
+    unmatched_mesh_eigenvalue_count: as in `RootsOfD`."""
     errors = _errors_of_located_roots(located, determinant)
     # For so few numbers Python is faster than NumPy.
     displacement = [
@@ -147,8 +149,8 @@ def _roots_with_errors(
 
 
 def _prepare_elements(determinant: ArmDeterminant, needed_w: float, later_w: float) -> None:
-    """Makes elements for all |w| up to `later_w` if `later_w` is at most `max_later_w_over_root_w` times
-    `needed_w`, else for all |w| up to `needed_w`."""
+    """Prepares the propagators for all |w| up to `later_w`, if `later_w` is at most `max_later_w_over_root_w`
+    times `needed_w`; otherwise for all |w| up to `needed_w`."""
     if needed_w < later_w <= ARM_ROOT_SETTINGS.max_later_w_over_root_w * needed_w:
         with suppress(FloatingPointError):  # too many elements: they are needed later, if at all
             determinant.propagators_for(later_w)
@@ -204,8 +206,8 @@ class _LocatedRoot(NamedTuple):
 
 
 def _refine_guesses(guesses: list[tuple[complex, float]], determinant: ArmDeterminant) -> list[_LocatedRoot]:
-    """The root of D near each guess (w, half_distance), a pair of results of
-    `_separated_close_roots`. For conjugate guesses only the first is refined."""
+    """The root of D near each of `guesses`, a pair (w, half_distance) of corresponding entries of the result
+    of `_separated_close_roots`. For conjugate guesses only the first is refined."""
     is_conjugate = [
         k > 0 and w.imag != 0 and w == guesses[k - 1][0].conjugate() for k, (w, _) in enumerate(guesses)
     ]

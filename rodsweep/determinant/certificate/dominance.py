@@ -3,7 +3,7 @@
 With sqrt(z+) the root of larger real part, D (`rodsweep.determinant.value`) is
 
     D = A (1 + e),   A = w z+' exp(sqrt z+)/(4 z+),
-    A e = 1 + (w z+'/(4 z+)) (exp(-sqrt z+) - 2) + (w/2) z-' E(z-).
+    A e = 1 + (w z+'/(4 z+)) (exp(-sqrt z+) - 2) + (w/2) z-' E(z-), E(z) = (cosh sqrt(z) - 1)/z.
 
 Over a disc |dw| <= rho with |e| < 1 and Re sqrt(z+) > Re sqrt(z-) the phase of D is arg A + arg(1 + e). The
 term arg(1 + e) stays within a right angle and is needed only at the two ends of a chain of such discs. All
@@ -31,7 +31,8 @@ class DominanceSettings(KernelConstants):
     """Radius of the first trial disc divided by the distance of the start of the step from a branch point of
     z+-."""
     max_halvings: int = 2
-    """The segment of proved dominance ends if a trial disc halved this many times is still not proved."""
+    """The proved part of the segment ends where a trial disc, halved this many times, still does not prove
+    that one exponential dominates D."""
     enlargement_fraction_for_overlap: float = 1e-3
     """The radius of a disc exceeds half the step that the disc covers by this fraction, so that rounding
     leaves no gap between discs."""
@@ -39,8 +40,8 @@ class DominanceSettings(KernelConstants):
     """A step ends at the end of the segment if the distance to the end, divided by the length of the segment,
     is at most this number, the size of rounding errors."""
     max_dominant_factor_change: float = 0.5
-    """Dominance is proved only on discs over which no factor of A changes by more than this fraction; the
-    phase of each factor then changes by less than a right angle."""
+    """Dominance is proved only on discs over which no factor of the dominant term A of D changes by more than
+    this fraction; the phase of each factor then changes by less than a right angle."""
     field_ranges: ClassVar = {
         "first_radius_over_branch_point_distance": (0.0, 1.0),
         "max_dominant_factor_change": (0.0, 1.0),
@@ -52,7 +53,8 @@ DOMINANCE_SETTINGS = DominanceSettings()
 
 
 class SquaredExponent(NamedTuple):
-    """z+ or z- at a point w, with slope dz/dw and root sqrt(z)."""
+    """One of the exponents z+ and z- of D (`rodsweep.determinant.value`) at a point w: z, slope dz/dw, and
+    root sqrt(z)."""
 
     z: complex
     slope: complex
@@ -63,7 +65,9 @@ class SquaredExponent(NamedTuple):
 def _dominant_and_recessive(
     w: complex, coefficients: Coefficients
 ) -> tuple[complex, SquaredExponent, SquaredExponent]:
-    """Returns (P, dominant exponent, recessive exponent) at w; the dominant one has the larger Re sqrt(z)."""
+    """Returns (P, dominant exponent, recessive exponent) at w, with P from z+- = M +- 2 P
+    (`rodsweep.determinant.value`). The dominant exponent is the one of z+ and z- with the larger Re
+    sqrt(z)."""
     P, P_w, _, plus, minus = exponent_derivatives(w, coefficients)
     drag = coefficients.c2 + coefficients.gamma3
     plus_exponent = SquaredExponent(plus, drag + 2 * P_w, cmath.sqrt(plus))
@@ -77,9 +81,10 @@ def _dominant_and_recessive(
 def _nonlinear_change_bounds(
     w: complex, rho: float, P: complex, coefficients: Coefficients
 ) -> tuple[float, float]:
-    """Returns upper bounds (nonlinear part of z+-, change of dz+-/dw) over the disc |dw| <= rho about w; inf
-    if the disc is too large. Only the term 2 P of z+- = T w - F g +- 2 P is nonlinear in w; 2 - sqrt(1 - e)
-    majorises sqrt(1 + e)."""
+    """Returns upper bounds (nonlinear part of the change of z+-, change of dz+-/dw) over the disc |dw| <= rho
+    about w; inf if the disc is too large. Of z+- = T w - F g +- 2 P, with T = c2 + gamma3, g = nu + F c2 and
+    P^2 = w (g nu + c2 gamma3 w), only the term 2 P is nonlinear in w; 2 - sqrt(1 - e) majorises sqrt(1 +
+    e)."""
     F, nu, c2, gamma3 = coefficients
     X = c2 * gamma3
     gn = (nu + F * c2) * nu
@@ -100,7 +105,8 @@ def _nonlinear_change_bounds(
 
 @compiled
 def has_dominant_exponential(w: complex, rho: float, coefficients: Coefficients) -> bool:
-    """Whether one exponential is proved to dominate D = A (1 + e), |e| < 1, within rho of w."""
+    """Whether it is proved that in the disc of radius rho about w one of the exponentials exp(sqrt z+),
+    exp(sqrt z-) dominates D: D = A (1 + e) with |e| < 1."""
     P, (z, slope, root), (z_other, slope_other, root_other) = _dominant_and_recessive(w, coefficients)
     if P == 0 or root.real <= root_other.real:
         return False
@@ -143,7 +149,8 @@ def has_dominant_exponential(w: complex, rho: float, coefficients: Coefficients)
 
 @compiled
 def dominant_prefactor_and_exponent(w: complex, coefficients: Coefficients) -> tuple[complex, complex]:
-    """Returns (w z'/z, sqrt z) at w, with which the dominant term of D is A = (w z'/z) exp(sqrt z)/4."""
+    """Returns (w z'/z, sqrt z) at w for the dominant exponent z; the dominant term of D is A = (w z'/z)
+    exp(sqrt z)/4."""
     _, dominant, _ = _dominant_and_recessive(w, coefficients)
     return w * dominant.slope / dominant.z, dominant.sqrt_z
 
@@ -152,7 +159,7 @@ def dominant_prefactor_and_exponent(w: complex, coefficients: Coefficients) -> t
 def _phase_minus_dominant_phase(
     w: complex, factors: tuple[complex, complex], coefficients: Coefficients
 ) -> float:
-    """arg(1 + e) = arg(D/A), phase of D minus phase of A. factors: result of
+    """arg(D/A), the phase of D minus the phase of its dominant term A. factors: result of
     `dominant_prefactor_and_exponent` at w."""
     D, _, _, _ = scaled_determinant(w, coefficients)
     factor, root = factors
@@ -164,9 +171,9 @@ def _phase_minus_dominant_phase(
 def phase_over_dominated_segment(
     start: complex, direction: complex, length: float, coefficients: Coefficients
 ) -> tuple[float, float, int]:
-    """Returns (length, change, disc count). length: length of the segment from `start` on which dominance is
-    proved, at most the argument `length`. change: change of arg D over this segment. disc_count: number of
-    examined discs. direction: unit vector of the segment."""
+    """Returns (length, change, number of examined discs). length: length of the segment from `start` on which
+    one exponential is proved to dominate D, at most the argument `length`. change: change of arg D over this
+    part of the segment. direction: unit vector of the segment."""
     F, nu, c2, gamma3 = coefficients
     X = c2 * gamma3
     gn = (nu + F * c2) * nu

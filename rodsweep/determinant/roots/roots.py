@@ -35,10 +35,10 @@ class RootsOfD(NamedTuple):
     arrays are (k,).
 
     mesh_indices: index of each root in the list of eigenvalues of the mesh. error: absolute error estimates.
-    relative_mesh_displacement: |eigenvalue of the mesh - root| / max(|w|, length over which D changes).
-    wave_number: largest |q|, in 1/L; for arms the mean of |q| along the arm. is_imaginary: whether the root
-    is imaginary within its error. unmatched_mesh_eigenvalue_count: number of eigenvalues of the mesh that lie
-    in the a-priori box right of all roots and do not approximate a root.
+    relative_mesh_displacement: |eigenvalue of the mesh - root| / max(|w|, change of w over which an exponent
+    of D changes by 1). wave_number: largest |q|, in 1/L; for arms the mean of |q| along the arm.
+    is_imaginary: whether the root is imaginary within its error. unmatched_mesh_eigenvalue_count: number of
+    eigenvalues of the mesh that lie in the a-priori box right of all roots and do not approximate a root.
     """
 
     mesh_indices: NDArray[np.int64]
@@ -52,13 +52,13 @@ class RootsOfD(NamedTuple):
 
 @compiled
 def root_error_and_scales(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
-    """Returns (estimated distance from w to the nearest root of D, length, wave number), as
-    `root_error_w_scale_and_wave_number`, but also near double roots.
+    """Returns (estimated distance from w to the nearest root of D, change of w over which an exponent of D
+    changes by 1, wave number |q|), as `root_error_w_scale_and_wave_number`, but also near double roots.
 
     With e = max(|D|, rounding error of D), the Newton correction e/|D'| is valid if |D'|^2 is large against e
     |D''|. Otherwise w lies at the distance |D'/D''| from the middle of two roots, and the roots lie within
-    sqrt(2 e/|D''|) of the middle. At a well-conditioned eigenvalue the rounding error of D is a typical
-    value, at any other eigenvalue a value that covers nearly all roundings.
+    sqrt(2 e/|D''|) of the middle. The rounding error in e is a typical value if w is well conditioned;
+    otherwise it covers nearly all rounding errors.
     """
     error, length, wave = root_error_w_scale_and_wave_number(w, coefficients)
     if error > ROOT_SETTINGS.min_ill_conditioned_relative_error * abs(w):

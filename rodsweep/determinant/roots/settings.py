@@ -10,11 +10,12 @@ class RootSettings(KernelConstants):
     """Settings for the refinement of eigenvalues of a mesh to roots of D."""
 
     max_newton_correction_over_w_scale: float = 1e-2
-    """An eigenvalue of the mesh approximates a root of D if |D/D'| <= this number times the length over which
-    D changes; otherwise, unless it belongs to a close pair, it is an artefact of the mesh."""
+    """An eigenvalue of the mesh approximates a root of D if |D/D'| <= this number times the change of w over
+    which an exponent of D changes by 1; otherwise, unless it belongs to a close pair, it is an artefact of
+    the mesh."""
     max_pair_correction_over_w_scale: float = 0.1
     """Two close eigenvalues of the mesh approximate two roots of D if |D/D'| of each eigenvalue is at most
-    this number times the length over which D changes."""
+    this number times the change of w over which an exponent of D changes by 1."""
     max_pair_distance_in_errors: float = 4.0
     """Two eigenvalues of the mesh are moved to the roots of a quadratic Taylor polynomial of D before
     Newton's method if their distance is at most this number times the sum of their Newton corrections."""
@@ -41,7 +42,8 @@ class RootSettings(KernelConstants):
     """The Newton correction e/|D'| is a valid error estimate if |D'|^2 >= this number times e |D''|, with the
     error e of D: the next root, at 2 |D'/D''|, is then at least 32 corrections away."""
     same_root_distance_in_errors: float = 4.0
-    """Largest distance, over the sum of the errors, at which two computed roots may be the same root of D."""
+    """Two computed roots may be the same root of D if their distance, divided by the sum of their errors, is
+    at most this number."""
     same_root_fraction_of_next_distance: float = 0.25
     """Two roots that may be the same by `same_root_distance_in_errors` are the same root of D if their
     distance is below this fraction of 2 |D'/D''|, the estimated distance to the next root."""
@@ -59,7 +61,8 @@ class RootNewtonSettings(KernelConstants):
     max_steps_to_eigenvalue: int = 12
     """Maximum number of Newton steps to an eigenvalue."""
     max_step_over_expected_value: float = 20.0
-    """Newton's method for a crossing fails after a step of this times the expected size of eta or p."""
+    """Newton's method for a crossing fails if a step of the frequency eta or of p exceeds this number times
+    the expected size of eta or p."""
     converged_step_in_rounding_errors: float = 4.0
     """Newton's method has converged if |step| <= this number times the rounding error of the zero."""
     relative_jacobian_difference_step: float = 1e-5

@@ -45,7 +45,8 @@ class _SparsityPattern(NamedTuple):
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _sparsity_pattern(mesh: Mesh, component_count: int) -> _SparsityPattern:
-    """The pattern on a mesh for a number of components of stresses and velocities."""
+    """Sparsity pattern of the matrix A on a mesh. component_count: number of components of stresses and
+    velocities that the matrix contains."""
     N = mesh.node_count
     s = np.arange(component_count * N).reshape(-1, N)
     v = s.size + np.arange(component_count * (N + 1)).reshape(-1, N + 1)

@@ -14,8 +14,8 @@ def first_resolution(
     relative `accuracy`. amplified_wave_number: as from `largest_growth_and_wave_number`, in 1/L; computed if
     None.
 
-    However few modes are requested, the modes of a pulled rod have layers exp(-q u) at both ends, with
-    q = sqrt(-F g) at small growth rates. Raises NotUniform for a varying arm or a nonlinear law.
+    However few modes are requested, the modes of a pulled rod have layers exp(-q u) at both ends, with q =
+    sqrt(-F g), g = nu + F c2, at small growth rates. Raises NotUniform for a varying arm or a nonlinear law.
     """
     if amplified_wave_number is None:
         _, amplified_wave_number = largest_growth_and_wave_number(rod)

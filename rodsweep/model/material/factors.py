@@ -14,7 +14,8 @@ class FactorCacheSettings:
     """Limits of the cache of factors along an arm, which takes at most 13 MB."""
 
     max_points: int = 1024
-    """Largest number of points at which factors are cached. Larger arrays belong to meshes used once."""
+    """Largest number of points at which the factors of stiffnesses and drags are cached. Larger arrays belong
+    to meshes used once."""
     max_entries: int = 256
     """Maximum number of cached results, by profile, taper and points; a sweep along F needs about ten."""
 
@@ -40,8 +41,8 @@ def _cached_factors(
     profile: Profile | None, taper: float, point_bytes: tuple[bytes, bytes], shape: tuple[int, ...]
 ) -> dict[str, Array]:
     """The result of `factors_along`, cached by the bytes of the points, because the arms of a sweep over F
-    are evaluated at the same points. point_bytes: bytes of the arrays u and `remainder`, the latter empty
-    if u is exact. shape: shape of the arrays."""
+    are evaluated at the same points. point_bytes: bytes of the arrays u and `remainder` (exact coordinates of
+    the points minus u), the latter empty if u is exact. shape: shape of both arrays."""
     u = np.frombuffer(point_bytes[0]).reshape(shape)
     remainder = np.frombuffer(point_bytes[1]).reshape(shape) if point_bytes[1] else np.zeros(shape)
     return _factors_along(profile, taper, u, remainder)

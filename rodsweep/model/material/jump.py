@@ -53,7 +53,8 @@ class LawUnknowns(NamedTuple):
 
 @compiled
 def _section_of_side(side: Array) -> LocalSection:
-    """The section on one side of a jump; side: the values of this side, (7,)."""
+    """The section on one side of a jump. side: the values of this side, (7,), in the order of
+    JUMP_SIDE_COLUMNS."""
     return LocalSection(side[0], side[1], side[2])
 
 
@@ -86,7 +87,8 @@ def _is_negligible(step: LawUnknowns, unknowns: LawUnknowns) -> bool:
 @compiled
 def unknowns_before_jump(law: int, sides: Array, q: LawUnknowns) -> LawUnknowns:
     """The unknowns a on the base side of a jump, from the mean unknowns q. law: number of the constitutive
-    law. sides: both sides, (2, 7). Newton's method solves the equations of equal stresses on both sides."""
+    law. sides: both sides, (2, 7), with the columns JUMP_SIDE_COLUMNS. Newton's method solves the equations
+    of equal stresses on both sides."""
     # With stresses as unknowns a linear rod has the same unknown on both sides.
     if law == LINEAR_LAW_NUMBER:
         return q
@@ -122,14 +124,14 @@ def unknowns_before_jump(law: int, sides: Array, q: LawUnknowns) -> LawUnknowns:
 @compiled
 def unknowns_behind_jump(sides: Array, q: LawUnknowns, a: LawUnknowns) -> LawUnknowns:
     """The unknowns b on the tip side of a jump, from the mean unknowns q and the unknowns a on the base side.
-    sides: both sides, (2, 7)."""
+    sides: both sides, (2, 7), with the columns JUMP_SIDE_COLUMNS."""
     return LawUnknowns((q.q1 - sides[0, 3] * a.q1) / sides[1, 3], (q.q3 - sides[0, 4] * a.q3) / sides[1, 4])
 
 
 @compiled
 def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> StressMinusRestStress:
     """Stresses N and M at a jump, minus their values at rest, for the mean unknowns q1, q3. law: number of
-    the constitutive law. sides: both sides, (2, 7)."""
+    the constitutive law. sides: both sides, (2, 7), with the columns JUMP_SIDE_COLUMNS."""
     # The stress is equal on both sides, so one side suffices.
     a = unknowns_before_jump(law, sides, LawUnknowns(q1, q3))
     return stress_minus_rest_stress(law, _section_of_side(sides[0]), a.q1, a.q3)
@@ -139,7 +141,7 @@ def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> StressMinusR
 def _compliance_at_jump(law: int, sides: Array, a: LawUnknowns, b: LawUnknowns) -> TangentMatrix:
     """Derivatives of the mean unknowns q with respect to the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM). law:
     number of the constitutive law. a, b: unknowns on the base side and on the tip side. sides: both sides,
-    (2, 7)."""
+    (2, 7), with the columns JUMP_SIDE_COLUMNS."""
     S = stress_tangent(law, _section_of_side(sides[0]), a.q1, a.q3)
     T = stress_tangent(law, _section_of_side(sides[1]), b.q1, b.q3)
     # Compliances of the two sides add in the mean, stiffnesses do not, so both tangents are inverted.
@@ -160,7 +162,7 @@ def side_increments_at_jump(
 ) -> tuple[LawUnknowns, LawUnknowns]:
     """Returns (increment of a, increment of b): increments of the unknowns on the base side and the tip side
     of a jump. law: number of the constitutive law. q: mean unknowns. change: infinitesimal increment of q.
-    sides: both sides, (2, 7)."""
+    sides: both sides, (2, 7), with the columns JUMP_SIDE_COLUMNS."""
     a = unknowns_before_jump(law, sides, q)
     b = unknowns_behind_jump(sides, q, a)
     # First the common stress that the mean increment causes, then the increment of each side by its own law.
@@ -175,7 +177,7 @@ def side_increments_at_jump(
 @compiled
 def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> TangentMatrix:
     """Derivatives of the stresses N and M at a jump with respect to the mean unknowns q1, q3. law: number of
-    the constitutive law. sides: both sides, (2, 7)."""
+    the constitutive law. sides: both sides, (2, 7), with the columns JUMP_SIDE_COLUMNS."""
     q = LawUnknowns(q1, q3)
     a = unknowns_before_jump(law, sides, q)
     Z = _compliance_at_jump(law, sides, a, unknowns_behind_jump(sides, q, a))
@@ -190,9 +192,10 @@ def stress_parameter_derivative_at_jump(
     """Derivatives of the stresses N and M at a jump with respect to a parameter, at fixed mean unknowns q1,
     q3.
 
-    law: number of the constitutive law. sides: both sides, (2, 7). change: derivatives of nu, c1 and c3 of
-    both sides with respect to the parameter, (2, 3). The weights in the mean strain are constant, because a
-    parameter multiplies the compliances of both sides by the same factor.
+    law: number of the constitutive law. sides: both sides, (2, 7), with the columns JUMP_SIDE_COLUMNS.
+    change: derivatives of nu, c1 and c3 of both sides with respect to the parameter, (2, 3). The weights in
+    the mean strain are constant, because a parameter multiplies the compliances of both sides by the same
+    factor.
     """
     q = LawUnknowns(q1, q3)
     a = unknowns_before_jump(law, sides, q)

@@ -46,7 +46,8 @@ class TangentMatrix(NamedTuple):
 
 @compiled
 def bending_factor_and_derivatives(law: int, h: float) -> tuple[float, float, float]:
-    """Returns (B, B', B''): bending factor at the stretch h, and its derivatives. law: number of the law."""
+    """Returns (B, B', B''): bending factor B of the law at the stretch h, and its derivatives by h; the
+    bending moment is B(h) q3. law: number of the law."""
     if law == SWELLING_SECTION_LAW_NUMBER:
         # The law is that of an incompressible rubber whose section shrinks as the rod is stretched.
         a = 1 / h
@@ -78,7 +79,8 @@ def shortening(law: int, x: float) -> float:
 
 @compiled
 def _neo_hookean_secant(nu: float, h: float) -> float:
-    """[W'(h) - W'(nu)]/(h - nu) of the neo-Hookean law, without cancellation for h close to nu."""
+    """[W'(h) - W'(nu)]/(h - nu) of the neo-Hookean law, without cancellation for h close to nu. W: stretch
+    energy. h, nu: stretch, and stretch at rest."""
     a = 1 / nu
     b = 1 / h
     return (1 + a * b * (a + b)) / 3

@@ -40,8 +40,8 @@ MIN_Y_SLOPE_JUMP_OVER_OTHER_JUMPS = 3.0
 log period, which are smooth there. At a sharp bend that the cycles do not resolve, all three jumps are
 similar."""
 BRANCH_ROUNDING_TOLERANCE = 1e-9
-"""Rounding tolerance for distances divided by the range of the branch, and for imaginary parts of roots
-divided by the step between cycles."""
+"""Rounding tolerance for distances divided by the range of the branch, and, in the search for corners, for
+the imaginary part of the place between two cycles, from 0 to 1, where two polynomials intersect."""
 SEGMENTS_BETWEEN_CYCLES = 12
 """Number of straight segments that are drawn between two cycles."""
 
@@ -75,9 +75,9 @@ def smooth_curve_of_branch(curve: StoredBranch) -> tuple[Array, Array, Array, ND
 
 def _vertices_of_smooth_curve(cycles: Array, extent: Array) -> Array:
     """Vertices, (m, 3), of a smooth curve through the cycles `cycles`, (n, 3), with SEGMENTS_BETWEEN_CYCLES
-    segments between two cycles. Columns: parameter, y, log period. extent: ranges of the branch, (3,). At a
-    Hopf point the branch is symmetric under y to -y. Mirror images of cycles, beyond the Hopf point,
-    therefore give the curve a square-root shape."""
+    segments between two cycles. Columns: parameter, y, log period. extent: range of each column over the
+    branch, (3,). At a Hopf point the branch is symmetric under y to -y. Mirror images of cycles, beyond the
+    Hopf point, therefore give the curve a square-root shape."""
     cycles_before = cycles[MIRRORED_CYCLE_COUNT:0:-1] * MIRROR_FACTORS
     cycles_after = cycles[-2 : -MIRRORED_CYCLE_COUNT - 2 : -1] * MIRROR_FACTORS
     first_index = len(cycles_before) if cycles[0, 1] == 0 else 0
@@ -95,11 +95,11 @@ def _vertices_of_smooth_curve(cycles: Array, extent: Array) -> Array:
 
 def corners_by_previous_cycle(cycles: Array, extent: Array) -> dict[int, Array]:
     """Corners of a branch through the cycles `cycles`, (n, 3), as {index of the previous cycle: (parameter,
-    y, log period), (3,)}. extent: ranges of the branch, (3,).
+    y, log period), (3,)}. extent: range of each coordinate over the branch, (3,).
 
     At a corner, a different maximum of y(t) becomes the largest maximum, so y is continuous and its slope
     increases. On each interval between cycles, one polynomial for y passes through the cycles before the
-    interval, and one through the cycles behind; their intersection is a candidate. The variable of the
+    interval, and one through the cycles after it; their intersection is a candidate. The variable of the
     polynomials is the arc length of (parameter, log period), which is smooth. Of candidates on neighbouring
     intervals, the candidate with the largest change of slope is the corner.
     """
@@ -147,7 +147,8 @@ def _cumulative_chord_lengths(
     points: Array, extent: Array, weights: Array = CHORD_LENGTH_WEIGHTS, power: float = 1.0
 ) -> Array:
     """Sum of the chord lengths to the power `power`, from the first point to each point, (n,). points:
-    points, (n, 3). extent: ranges of the branch, (3,). weights: weights of the coordinates, (3,)."""
+    points, (n, 3). extent: range of each coordinate over the branch, by which the points are divided, (3,).
+    weights: weights of the coordinates, (3,)."""
     chords = np.linalg.norm(np.diff(points / extent * weights, axis=0), axis=1)
     return np.append(0.0, np.cumsum(chords**power))
 

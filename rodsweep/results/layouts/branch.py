@@ -33,7 +33,8 @@ SPECIAL_POINT_MEANINGS = {
     "end": "the branch ends here for the reason in special_reason",
     "period_doubling": "a multiplier of a cycle without the symmetry is -1; cycles of twice the period begin",
 }
-"""Meaning of every kind of special point, by word; the file stores the position in this table."""
+"""Meaning of every kind of special point. Keys: names of the kinds; the file stores the position of the name
+in this table, from 0."""
 SPECIAL_KINDS = tuple(SPECIAL_POINT_MEANINGS)
 """Names of the kinds of special points, in the order of their stored numbers."""
 END_REASONS = ("none", "range_end", "crushed", "no_cycle_found", "list_full")

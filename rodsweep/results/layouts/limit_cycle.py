@@ -133,14 +133,16 @@ TRANSIENT_VARIABLES = along_dimension(
     ),
 )
 HOPF_DIMENSION = "hopf"
-"""Name of the dimension of the Hopf points on the lines of points of a file."""
+"""Name of the dimension of the Hopf points that were found along lines of points; the points of a line differ
+in one parameter only."""
 HOPF_CROSSING_KINDS = ("none", "hopf", "hopf_reverse", "restabilization")
 """Names of the kinds of crossings at which a pair of eigenvalues crosses the imaginary axis."""
 
 
 def hopf_point_variables(names: Collection[str]) -> tuple[Variable, ...]:
-    """Variables of the Hopf points of the straight rod on lines of points. names: parameters of the file, of
-    which the parameters of transverse motion are stored for each Hopf point."""
+    """Variables of the Hopf points of the straight rod between neighbouring points of a line, that is, of
+    points that differ in one parameter only. names: parameters of the file; for each Hopf point the
+    parameters on which transverse motion depends are stored."""
     place_clause = "at the Hopf point"
     parameters = [PARAMETERS[name] for name in TRANSVERSE_PARAMETER_NAMES if name in names]
     kinds = ((CROSSING_KINDS.index(kind), kind) for kind in HOPF_CROSSING_KINDS)
@@ -192,8 +194,8 @@ REUSE_RULES_OF_INCREASED_OPTIONS = {
 
 
 def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables of the Hopf points on the lines of points in the file of a resolved config. is_grid: not
-    used."""
+    """Variables of the Hopf points that are found along all lines of points of the file, for a resolved
+    config; the points of a line differ in one parameter only. is_grid: not used."""
     variables = hopf_point_variables((*NON_OPTIONAL_LINEAR_PARAMETER_NAMES, *optional_parameters_in(config)))
     if has_uniform_linear_rods(config):
         return variables

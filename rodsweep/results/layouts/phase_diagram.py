@@ -1,4 +1,5 @@
-"""Layout of the task phase_diagram: rows, and stability boundaries followed through the rows."""
+"""Layout of the task phase_diagram: rows (lines of constant second parameter), and stability boundaries that
+are followed from row to row."""
 
 from typing import Any
 
@@ -34,7 +35,8 @@ BOUNDARY_CURVE_END_REASONS = {
     "not_followed": "no further point was found",
     "list_full": "the curve has the maximum number of points",
 }
-"""Meaning of every reason why a boundary curve ends, by word; the file stores the position in this table."""
+"""Meaning of every reason why a boundary curve ends. Keys: names of the reasons; the file stores the position
+of the name in this table, from 0."""
 BOUNDARY_CURVE_KINDS = ((0, "double"), (1, "hopf"))
 """(stored number, word) for boundary curves: of double real eigenvalues, where oscillations set in or end, or
 of Hopf points."""
@@ -43,9 +45,11 @@ STABLE_STATES = ((-1, "missing"), *enumerate(STABLE_STATE_NAMES))
 """(stored number, word) for each set of stable states of the rod at a point of a phase diagram with
 cycles."""
 CYCLE_SPECIAL_DIMENSION = "cycle_special"
-"""Name of the dimension of the special points on the branches of cycles of a row."""
+"""Name of the dimension of the special points on the branches of cycles of one row, that is, of one value of
+the second parameter."""
 MAX_CYCLE_SPECIAL_POINTS = 64
-"""Maximum number of special points stored for a row; the variable cycle_special_count counts all."""
+"""Maximum number of special points stored for one row of the diagram; the variable cycle_special_count
+contains the number of all special points."""
 CYCLE_CURVE_END_REASONS = {
     "none": "not an end of the curve",
     "edge": "the curve leaves the diagram",
@@ -57,8 +61,8 @@ CYCLE_CURVE_END_REASONS = {
     "closed": "the curve returns to its first point",
     "not_followed": "no further point was found",
 }
-"""Meaning of every reason why a curve of folds of cycles, or of torus points, ends, by word; the file stores
-the position in this table."""
+"""Meaning of every reason why a curve of folds of cycles, or of torus points, ends. Keys: names of the
+reasons; the file stores the position of the name in this table, from 0."""
 REUSE_RULES_OF_INCREASED_OPTIONS = dict.fromkeys(("certify", "cycles"), NEW_SOLVE_RULE) | {
     "crossings": CROSSING_LIST_REUSE_RULE,
     "curves": NO_NEW_SOLVE_RULE,
@@ -66,8 +70,8 @@ REUSE_RULES_OF_INCREASED_OPTIONS = dict.fromkeys(("certify", "cycles"), NEW_SOLV
 
 
 def plane_and_value_counts(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
-    """Returns ((line, row), number of values by parameter) for a resolved config. line: name of the parameter
-    that varies along each row. row: name of the parameter that differs between rows."""
+    """Returns ((line parameter, row parameter), number of values of each by name) for a resolved config. The
+    line parameter varies along each row of the diagram; the row parameter differs between rows."""
     axes = config["parameters"]
     names = (name for name in TRANSVERSE_PARAMETER_NAMES if name in axes)
     value_counts = {name: len(axes[name].get("values", ())) or axes[name]["num"] for name in names}
@@ -111,8 +115,8 @@ def layout(config: dict[str, Any]) -> Layout:
 
 
 def cycle_row_variables(line_parameter: str) -> tuple[Variable, ...]:
-    """Variables of a row for `phase_diagram.cycles`: stable states, and special points of branches of cycles.
-    line_parameter: parameter along the row."""
+    """Variables of one row of the diagram for `phase_diagram.cycles`: stable states, and special points of
+    branches of cycles. line_parameter: name of the parameter that varies along a row."""
     unit = PARAMETERS[line_parameter].unit
     place_clause = "at the special point"
     absolute_error_meaning = "estimate of the absolute error of cycle_special_"

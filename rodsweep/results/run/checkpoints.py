@@ -16,8 +16,8 @@ import numpy as np
 from .journal import CHECKSUM_BYTES, delete_matching_files, with_checksum
 
 CHECKPOINT_GLOB = "chain-*"
-"""Pattern of the file names of checkpoints of chains of points, including files that a kill left
-unfinished."""
+"""Pattern of the file names of checkpoints of chains, including files that a kill left unfinished. A chain is
+a sequence of points, each solved from the result of the point before."""
 ITEM_RESULT_GLOB = "unit-*"
 """Pattern of the file names of results of work items, including files that a kill left unfinished."""
 CHECKPOINT_HEAD = b"rodsweep checkpoint 8\n"
@@ -31,7 +31,8 @@ STATE_PREFIX = "state_"
 
 
 class ArrayConvertibleState(Protocol):
-    """Solver state after a point of a chain of points, which can be written as arrays."""
+    """Solver state after a point of a chain, from which the next point of the chain starts; the state can be
+    written as arrays."""
 
     def arrays(self) -> ArraysByName:
         """The complete solver state as arrays of any shape, (...,), by name."""
@@ -80,8 +81,8 @@ class ArrayStore:
 
 
 class Checkpoints(ArrayStore):
-    """Store of the last solved point of each unfinished chain of points, and of the solver state after this
-    point."""
+    """Store of the last solved point of each unfinished chain, and of the solver state after this point. A
+    chain is a sequence of points, each solved from the result of the point before."""
 
     file_name_pattern = CHECKPOINT_GLOB
 
@@ -94,14 +95,16 @@ class Checkpoints(ArrayStore):
         self._state_of = state_of
 
     def write(self, chain: int, index: int, state: ArrayConvertibleState | None) -> None:
-        """Stores the solver state after the point at the flat index `index` of a chain; None for no state."""
+        """Stores the solver state after the point at the flat index `index` of the chain number `chain`; None
+        for no state."""
         arrays = state.arrays() if state is not None else {}
         self.put(
             chain, {"index": np.array(index)} | {STATE_PREFIX + name: array for name, array in arrays.items()}
         )
 
     def read(self, chain: int) -> tuple[int, ArrayConvertibleState | None] | None:
-        """(flat index, solver state) of a chain's last checkpoint; None if there is no intact checkpoint."""
+        """(flat index, solver state) of the last checkpoint of the chain number `chain`; None if there is no
+        intact checkpoint."""
         arrays = self.get(chain)
         if arrays is None:
             return None
@@ -110,7 +113,7 @@ class Checkpoints(ArrayStore):
         return index, self._state_of(state_arrays) if state_arrays else None
 
     def remove(self, chain: int) -> None:
-        """Deletes the checkpoint of a finished chain."""
+        """Deletes the checkpoint of the finished chain number `chain`."""
         self._path(chain).unlink(missing_ok=True)
 
 

@@ -59,9 +59,10 @@ class MultiplierErrorAmplification:
         """Error of the largest multiplier at this cycle. error_quotient: the error at a nearby cycle, divided
         by `error_growth_factor` at that cycle.
 
-        The error e of a multiplier at the relative distance d from another multiplier is the relative error
-        D/d of the discriminant D = d^2, but at most the square root of the error of D, because the two
-        multipliers may coincide.
+        The largest multiplier and the nearest other multiplier are roots of a quadratic polynomial with the
+        discriminant d^2, d: distance of both, divided by the modulus. An error E of the discriminant changes
+        the multiplier by E/d, relative to its modulus, but at most by sqrt(E), because the two multipliers
+        may coincide.
         """
         relative_error = min(
             self.amplification_by_near_multiplier * error_quotient,
@@ -76,10 +77,10 @@ class MultiplierErrorAmplification:
         """Error of the largest multiplier, without safety factor, from its difference between two meshes.
         removed_fraction: fraction of the error that the finer mesh removes.
 
-        A mesh errs in the logarithm of a multiplier, the growth over a period. Where the multipliers of both
-        meshes differ by more than the modulus, this logarithm and not the multiplier is extrapolated, with
-        the safety factor in the exponent: such a multiplier has no correct digit, and its true value may be
-        larger by powers of ten.
+        difference: modulus of this difference. A mesh has an error in the logarithm of a multiplier, the
+        growth over a period. Where the multipliers of both meshes differ by more than the modulus, this
+        logarithm and not the multiplier is extrapolated, with the safety factor in the exponent: such a
+        multiplier has no correct digit, and its true value may be larger by powers of ten.
         """
         if difference <= self.modulus:
             return difference / removed_fraction

@@ -2,8 +2,8 @@
 
 A `CurveProblem` predicts and corrects the solution one step ahead. `follow_curve` chooses the step length
 from the prediction error and from the angle between successive steps, and halves the length of a failed step.
-The curve ends where a margin becomes zero, where the curve closes, where no step succeeds, or at the maximum
-number of solutions.
+The curve ends where a margin, the distance from a limit of the curve, becomes zero, where the curve closes,
+where no step succeeds, or at the maximum number of solutions.
 
 This module does not depend on rods, meshes, eigenvalues or cycles. References: Keller 1977; Govaerts 2000,
 ch. 2.
@@ -43,15 +43,15 @@ class CurveProblem(Protocol[Solution]):
         method fails."""
 
     def margins_to_curve_end(self, solution: Solution) -> Array:
-        """Signed distances, (margins,), of a solution from the limits of the curve; a negative distance means
-        that the solution is beyond this limit."""
+        """Signed distances, (margins,), of a solution from all limits of the curve; a negative distance means
+        that the solution is beyond this limit. Each of these distances is called a margin."""
 
     def point_at_zero_margin(
         self, previous: Sequence[Solution], outer: Solution, margin: int
     ) -> Solution | None:
-        """The solution between `previous[-1]` and `outer` at which the margin with the index `margin` is 0;
-        None if `previous[-1]` is to be the last solution. Raises an error of FAILURE_EXCEPTIONS if no
-        solution is found: the step is then repeated with half its length."""
+        """The solution between `previous[-1]` and `outer` at which the entry `margin` of
+        `margins_to_curve_end` is 0; None if `previous[-1]` is to be the last solution. Raises an error of
+        FAILURE_EXCEPTIONS if no solution is found: the step is then repeated with half its length."""
 
     def is_closed_by(self, previous: Sequence[Solution], solution: Solution) -> bool:
         """Whether the first solution of the curve lies on the step from `previous[-1]` to the next solution
@@ -140,9 +140,9 @@ class Curve(Generic[Solution]):
     """Solutions in order from the start of the curve, and the reason for the end of the curve. A closed curve
     has its start as the last solution, too.
 
-    margin_index: index of the margin that becomes negative at the end; -1 for another end. The last solution
-    is the solution at the zero of this margin, if `point_at_zero_margin` returns one.
-    """
+    margin_index: index of the margin, the entry of `margins_to_curve_end`, that becomes negative at the end;
+    -1 for another end. The last solution is the solution at the zero of this margin, if
+    `point_at_zero_margin` returns one."""
 
     solutions: list[Solution]
     end_reason: StopReason
@@ -209,10 +209,10 @@ def follow_curve(
 
 
 def first_crossed_margin(margins_before: Array, margins_after: Array) -> int:
-    """Index of the margin that becomes 0 first along a step, among the margins that decrease to a negative
-    value; -1 if there is no such margin. A margin that is negative before the step counts if it decreases
-    further. margins_before, margins_after: margins at the two ends of the step, (margins,), between which
-    each margin is interpolated linearly."""
+    """Index of the margin (signed distance from a limit of the curve) that becomes 0 first along a step,
+    among the margins that decrease to a negative value; -1 if there is no such margin. A margin that is
+    negative before the step counts if it decreases further. margins_before, margins_after: margins at the two
+    ends of the step, (margins,), between which each margin is interpolated linearly."""
     # A negative margin that grows does not end the curve, which enters from beyond this limit.
     decreases = (margins_after < 0) & (margins_after < margins_before)
     # Linear interpolation gives the fraction of the step at which each falling margin is 0.

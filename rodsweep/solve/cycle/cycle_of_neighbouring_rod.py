@@ -48,8 +48,8 @@ class NextMeshSettings:
     """A mesh is sufficient for the next cycle if the error of the current cycle is at most this fraction of
     the accuracy."""
     max_new_mesh_cost_ratio: float = 0.85
-    """A sufficient mesh is replaced by a new mesh if (cost of the new mesh)/(cost of the sufficient mesh) is
-    at most this number."""
+    """A sufficient mesh is replaced by a new mesh if the number of multiplications for the elimination of
+    Newton's matrix on the new mesh is at most this fraction of their number on the sufficient mesh."""
     max_new_mesh_cost_ratio_if_measured: float = 0.5
     """This limit replaces `max_new_mesh_cost_ratio` if the errors were measured at the current cycle:
     measuring the errors of a new mesh costs as much as three cycles."""
@@ -96,9 +96,10 @@ class CycleStart:
         return cls(predictor, *_next_mesh_and_calibration(refined, previous, name, accuracy), eigenvalues)
 
     def arrays(self) -> CheckpointArrays:
-        """All data as named arrays, for a checkpoint: orbit (N,), data (m, N + 1), offsets ("places") and
-        orders (m,), eigenvalues (n,), range of arms (5,), meshes, symmetry, rod with its material,
-        and calibration; N, m: as in `CyclePredictor`."""
+        """All data as named arrays, for a checkpoint. In the notation of `CyclePredictor`: orbit (N,), values
+        and derivatives under the name data (m, N + 1), parameter offsets under the name places (m,),
+        derivative orders under the name orders (m,). Further arrays: eigenvalues (n,), the fields of the
+        range of arms (5,), meshes, symmetry, rod with its material, and calibration."""
         predictor = self.predictor
         arrays: dict[str, Any] = {
             "places": predictor.parameter_offsets,
@@ -149,9 +150,9 @@ def _next_mesh_and_calibration(
 
 
 def _max_new_mesh_cost_ratio(refined: RefinedCycle, previous: "CycleStart | None", name: str) -> float:
-    """Largest cost of a new mesh divided by the cost of the current, sufficient mesh of the cycle `refined`;
-    0 if the current mesh remains in use. previous: data of the previous rod, or None. name: varied
-    parameter."""
+    """Largest cost of eliminating Newton's matrix on a new mesh, divided by the cost on the current,
+    sufficient mesh of the cycle `refined`, for the new mesh to be used; 0 if the current mesh remains in use.
+    previous: data of the previous rod, or None. name: varied parameter."""
     if previous is None:
         # Coefficient tails, not measured errors, determined the first mesh of a chain.
         return NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio

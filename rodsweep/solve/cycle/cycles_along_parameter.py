@@ -180,8 +180,8 @@ def predictor_from(solved: ConvergedOrbit, previous: CyclePredictor | None, name
 
 
 def relative_parameter_difference(first: StressForm, second: StressForm, name: str) -> float:
-    """|a - b|/max(|a|, |b|) for the coordinates a, b of the parameter `name` of the rods in the forms `first`
-    and `second`; 0 if a = b."""
+    """|a - b|/max(|a|, |b|), where a and b are the coordinates (1/k for a stiffness k, else the value) of the
+    parameter `name` for the rods in the forms `first` and `second`; 0 if a = b."""
     a = first.rod.coordinate(name)
     b = second.rod.coordinate(name)
     return abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0

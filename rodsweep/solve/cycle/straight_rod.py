@@ -184,9 +184,10 @@ def _leading_eigenvalues(rod: Rod, number: int) -> tuple[Complex, Array]:
 def growth_rate_of_integrated_rod(
     rod: Rod, integrated_rod: Rod, straight: StraightRodStability, rate: float
 ) -> float:
-    """Linear growth rate of the integrated rod `integrated_rod`, in 1/tau2, from its exact spectrum; `rate`,
-    the growth rate of the rod `rod` with the stability `straight`, if both rods are equal or the spectrum is
-    unknown. The growth rate by a stiff matrix would have an error of 1e-4."""
+    """Linear growth rate of `integrated_rod`, in 1/tau2, from its exact spectrum. `integrated_rod` is the rod
+    whose motion is integrated in place of a limiting rod, such as a rod with k1 = inf. If both rods are
+    equal, or if the spectrum is unknown, the result is `rate`, the growth rate of the rod `rod` with the
+    stability `straight`. The growth rate by a stiff matrix would have an error of 1e-4."""
     if integrated_rod == rod:
         return rate
     return straight_rod_stability(integrated_rod, np.array([straight.w])).growth_rate(rate)

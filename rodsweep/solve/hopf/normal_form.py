@@ -48,8 +48,9 @@ class NormalFormSettings:
     max_shifts: int = 10
     """Maximum number of shifts of the inverse iteration."""
     mesh_accuracy_ratio: float = 0.1
-    """The mesh rule, made for eigenvalues, is applied with the requested accuracy of c times this factor: the
-    error of c may be five times the error of the eigenvalue."""
+    """The rule that chooses a mesh for an accuracy of an eigenvalue is applied with the requested accuracy of
+    the Landau coefficient c, times this factor: the error of c may be five times the error of the
+    eigenvalue."""
     max_order: int = 20
     """Largest element order chosen by the mesh rule; an additional element costs less than a higher order."""
     max_nodes: int = 2000
@@ -67,16 +68,18 @@ error of the mode would exceed the stated error of c."""
 
 
 HARMONIC_WAVE_NUMBER_RATIO = 2
-"""Wave number of h20 and h11, which are quadratic in q and determine c, divided by the wave number of q."""
+"""Wave number of the second-order terms h20 and h11 of the normal form, divided by the wave number of the
+eigenvector q; h20 and h11 are quadratic in q and determine the Landau coefficient c."""
 
 
 @dataclass(frozen=True, eq=False)
 class NormalForm:
     """Normal form of a rod on a mesh, about the straight rod, for one eigenvalue w with Im w > 0.
 
-    w in 1/tau2, eigenvalue_slope = dw/dF in L^2/(k3 tau2), landau = c in 1/(tau2 L^2). q, p, h20 (complex)
-    and h11 (real): coefficients of the state X of `mixed_form`, (unknowns,). transverse_matrices: matrices of
-    the transverse components. At a Hopf point w = i Im w up to the error of the mesh.
+    w in 1/tau2, eigenvalue_slope = dw/dF in L^2/(k3 tau2), landau = c in 1/(tau2 L^2). q, p: eigenvector and
+    adjoint eigenvector; h20, h11: second-order terms, defined in the module docstring; h11 is real, all
+    others are complex. All four are states of `mixed_form`, (unknowns,). transverse_matrices: matrices of the
+    transverse components. At a Hopf point w = i Im w up to the error of the mesh.
     """
 
     mixed_form: MixedForm
@@ -96,14 +99,15 @@ class NormalForm:
 
     @property
     def is_supercritical(self) -> bool:
-        """Whether Re c < 0: the nonlinearity limits growth; cycles are stable if no further mode grows."""
+        """Whether Re c < 0, c: Landau coefficient. The nonlinearity then limits growth, and the cycles are
+        stable if no further mode grows."""
         return self.landau.real < 0
 
     @property
     def amplitude_coefficient(self) -> float:
         """Amplitude coefficient a, in L, of a Hopf point at the force F: the cycle at a nearby force F' has a
         largest tip y of |a| sqrt(|F' - F|/|F|). a < 0 if the cycles exist at F' < F, otherwise a > 0.
-        Infinite if Re c = 0."""
+        Infinite if the Landau coefficient c has Re c = 0."""
         with np.errstate(divide="ignore", invalid="ignore"):
             squared_amplitude = -self.eigenvalue_slope.real / np.float64(self.landau.real)
         return float(np.sign(squared_amplitude) * abs(self.F * squared_amplitude) ** 0.5)
@@ -111,7 +115,7 @@ class NormalForm:
     @property
     def frequency_slope(self) -> float:
         """Frequency slope b of a Hopf point at the force F: the cycle at a nearby force F' has the frequency
-        Im w + b (F' - F), in 1/tau2. Infinite if Re c = 0."""
+        Im w + b (F' - F), in 1/tau2. Infinite if the Landau coefficient c has Re c = 0."""
         with np.errstate(divide="ignore", invalid="ignore"):
             shift = self.landau.imag * self.eigenvalue_slope.real / np.float64(self.landau.real)
         return float(self.eigenvalue_slope.imag - shift)
@@ -150,8 +154,8 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
 
 
 def normal_form_by_mesh_rule(rod: Rod, w: complex, accuracy: float) -> NormalForm:
-    """Normal form of the eigenvalue w of `rod`, on a mesh that gives c to the relative accuracy `accuracy`.
-    Raises Unsolvable for the reasons of `normal_form_on`."""
+    """Normal form of the eigenvalue w of `rod`, on a mesh that gives the Landau coefficient c to the relative
+    accuracy `accuracy`. Raises Unsolvable for the reasons of `normal_form_on`."""
     return normal_form_on(elements_for_landau_coefficient(rod, w, accuracy), rod, w, accuracy)
 
 
@@ -213,8 +217,9 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
 
 
 def _eigenvalue_and_modes(matrices: StraightMatrices, guess: complex) -> tuple[complex, Complex, Complex]:
-    """(w, q, p): eigenvalue nearest to `guess`, and its transverse modes q and p, scaled as in the module
-    docstring. Two-sided inverse iteration, shifted by the Rayleigh quotient. Raises Unsolvable."""
+    """(w, q, p): eigenvalue nearest to `guess`, and its transverse eigenvector q and adjoint eigenvector p,
+    scaled as in the module docstring. Two-sided inverse iteration, shifted by the Rayleigh quotient. Raises
+    Unsolvable."""
     w = complex(guess)
     for _ in range(NORMAL_FORM_SETTINGS.max_shifts):
         if not np.isfinite(w):  # a factorisation would raise an error

@@ -24,12 +24,13 @@ class RodElementOrderRatioSettings(KernelConstants):
     """Smallest order of an element, divided by the largest order of the mesh. Elements of short and stiff
     segments reach 0.25."""
     rounding_steps_of_ratio_per_unit: int = 64
-    """Ratios are rounded up to multiples of 1/`rounding_steps_of_ratio_per_unit`, a step of less than one
-    order at every allowed order."""
+    """Ratios are rounded up to multiples of 1/`rounding_steps_of_ratio_per_unit`. Multiplied by any allowed
+    order of a mesh, this step is less than one order."""
     max_neglected_coefficient_ratio: float = 1 / 3
-    """Largest neglected coefficient of an element that loses orders, divided by that of the elements of the
-    largest order. Errors are quadratic in the coefficients: the largest error of twelve meshes of three arms
-    grew by half at most, and mostly did not grow."""
+    """Where the order of an element is reduced, its largest neglected coefficient is at most this fraction of
+    the largest neglected coefficient of the elements of the largest order. Errors are quadratic in the
+    coefficients: the largest error of twelve meshes of three arms grew by half at most, and mostly did not
+    grow."""
     field_ranges: ClassVar = {
         "min_element_order_ratio": (0.0, 1.0),
         "max_neglected_coefficient_ratio": (0.0, 1.0),

@@ -1,9 +1,10 @@
 """Measures of a cycle: extrema, harmonics, energy budget, path of the tip and shapes of the rod.
 
-The starts of all intervals except the last are equidistant in mesh time. At these starts strains and strain
-rates have the full order of the collocation. The trigonometric polynomial in mesh time through strains and
-strain rates converges spectrally; extrema are computed from this polynomial. Means are integrals by the
-quadrature of the collocation.
+Mesh time is a variable in which the time intervals have equal lengths, except the last two (`TimeGrading`).
+The starts of all time intervals except the last are therefore equidistant in mesh time. At these starts
+strains and strain rates have the full order of the collocation. The trigonometric polynomial in mesh time
+through strains and strain rates converges spectrally; extrema are computed from this polynomial. Means are
+integrals by the quadrature of the collocation.
 """
 
 from dataclasses import dataclass, field
@@ -39,8 +40,7 @@ class CycleMeasures:
     harmonics of the tip's y from the first, (harmonics,), in L. injection_..., dissipation_...: mean of the
     power, and rms of its fluctuation, in k3/(L tau2). energy_imbalance: mean injection/mean dissipation - 1.
     least_stretch: smallest h1 at the nodes; if it is small, also between the nodes
-    (`least_stretch_between_nodes`).
-    """
+    (`least_stretch_between_nodes`)."""
 
     period: float = nan
     frequency: float = nan
@@ -68,9 +68,9 @@ class CycleMeasures:
 
 class CycleMotion:
     """Motion of `orbit` over its whole period, as trigonometric polynomials. tip_samples: (x, y, theta) of
-    the tip at equidistant times of the period, (m, 3). last_tip_coefficients: Fourier coefficients of (x, y,
-    theta) in mesh time, (count, 3); the size of the last coefficients measures the error of the
-    polynomials."""
+    the tip at equidistant times of the period, (m, 3). last_tip_coefficients: all Fourier coefficients of the
+    tip's (x, y, theta) in mesh time, a variable in which the time intervals have equal lengths
+    (`TimeGrading`), (count, 3); the size of the last of them measures the error of the polynomials."""
 
     def __init__(self, orbit: Orbit) -> None:
         self.orbit = orbit
@@ -91,20 +91,21 @@ class CycleMotion:
         return self.orbit.symmetry.solved_parts_per_period
 
     def _coefficients_in_time(self, c: Complex) -> Complex:
-        """Fourier coefficients in time from Fourier coefficients c in mesh time, (count, ...)."""
+        """Fourier coefficients in time, (count, ...), from Fourier coefficients c in mesh time, (count, ...).
+        Mesh time: variable in which the time intervals have equal lengths (`TimeGrading`)."""
         return fourier_coefficients_in_time(c, self.orbit.grading, self._solved_parts_per_period)
 
     @cached_property
     def tip_coefficients(self) -> Complex:
-        """Fourier coefficients of the tip's (x, y, theta) in time, (count, 3)."""
+        """Fourier coefficients in time of the tip's (x, y, theta), the mean first, (count, 3)."""
         if self.orbit.grading.is_uniform:
             return self._path.tip_coefficients
         return fourier_coefficients(self.tip_samples)
 
     @cached_property
     def strain_coefficients(self) -> Complex:
-        """Fourier coefficients of (h1, h2, Pi) at the nodes of every element, (count, 3, nodes +
-        elements)."""
+        """Fourier coefficients in time of (h1, h2, Pi) at the nodes of every element, the mean first, (count,
+        3, nodes + elements)."""
         K, size = self._path.strains_and_rates.shape[2:]
         values, slopes = self._path.strains_and_rates.swapaxes(1, 2).reshape(2, K, 3 * size)
         signs = np.repeat(REFLECTION_SIGNS if self.orbit.is_symmetric else np.zeros(3), size)
@@ -113,14 +114,16 @@ class CycleMotion:
 
     @property
     def tip_angle_harmonic_sizes(self) -> Array:
-        """Size of each harmonic of the tip's theta from the first, (count - 1,)."""
+        """Amplitude, in rad, of each harmonic of the tip's theta, from the first harmonic on, (count - 1,),
+        count: number of Fourier coefficients with the mean."""
         sizes: Array = np.abs(self.tip_coefficients[1:, 2])
         return sizes
 
     @cached_property
     def curvature_harmonic_sizes(self) -> Array:
-        """Size of each harmonic of the curvature Pi from the first, (count - 1,): square root of the sum of
-        squared moduli over the nodes of all elements."""
+        """Size of each harmonic of the curvature Pi, from the first harmonic on, (count - 1,), count: number
+        of Fourier coefficients with the mean. Size: square root of the sum of squared moduli over the nodes
+        of all elements."""
         values, slopes = self._path.strains_and_rates[:, 2]
         signs = np.full(values.shape[1], REFLECTION_SIGNS[2] * self.orbit.is_symmetric)
         c = self._coefficients_in_time(hermite_fourier_coefficients_of_columns(values, slopes, signs))
@@ -147,8 +150,8 @@ class CycleMotion:
 
     @cached_property
     def measures(self) -> "CycleMeasures":
-        """Result of `measures_of` for this motion; the smallest stretch may take as long as a step of a
-        branch."""
+        """Result of `measures_of` for this motion. The computation of the smallest stretch may take as long
+        as a whole step along a branch."""
         return measures_of(self)
 
     @property

@@ -1,4 +1,4 @@
-"""Computation of the curves of a phase diagram, which need the results of all rows."""
+"""Computation of the curves of a phase diagram from the results of all its rows."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -43,10 +43,11 @@ if TYPE_CHECKING:
     from ..phase_diagram import PhaseDiagramTask
 
 RowAndStartingPointCount = tuple[int, int]
-"""(number of a row, number of special points, besides Hopf points, from which its branches are followed)."""
+"""(number of a row of the diagram, number of special points, besides Hopf points, at which its branches
+start)."""
 MAX_CACHED_ROWS = 200
-"""Maximum number of rows whose special points are cached in a process, because the cycles of a row take up to
-a megabyte. Special points of further rows are computed again, in some seconds and with equal results."""
+"""Maximum number of rows of the diagram whose special points are cached in a process: the cycles of a row
+take up to a megabyte. Special points of further rows are computed again, with equal results."""
 
 
 @dataclass(slots=True, eq=False)
@@ -55,22 +56,20 @@ class DiagramCurveSolver:
 
     The curves are boundaries of stability with their criticality, curves of generalised Hopf points, and
     curves of folds and torus points of cycles. Only the last kind of curves, which takes most of the time, is
-    divided among the ranks, into half curves.
-    """
+    divided among the ranks, into half curves."""
 
     task: "PhaseDiagramTask"
-    """The task of the diagram, which has the config and solves the rows."""
+    """The task of the diagram, with its config and the solver of its rows."""
     workspace: "NewtonWorkspace"
     """Buffers of Newton's matrices in this process."""
     special_points_by_row: "dict[RowAndStartingPointCount, tuple[SpecialPoint, ...]]" = field(
         default_factory=dict
     )
-    """Special points of cycles of the rows solved in this process."""
+    """Special points of cycles on rows of the diagram solved in this process."""
 
     def cache_special_points_of_row(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
-        """Returns `row` unchanged, after caching its special points if fewer than MAX_CACHED_ROWS rows are
-        cached. number: number of the row.
-        """
+        """Returns `row`, the branches of a row of the diagram, after caching its special points if fewer than
+        MAX_CACHED_ROWS rows are cached. number: number of the row."""
         if len(self.special_points_by_row) < MAX_CACHED_ROWS:
             self.special_points_by_row[number, 0] = row.special_points + row.folds_beyond_range
         return row
@@ -78,9 +77,8 @@ class DiagramCurveSolver:
     def cached_branch_starts(
         self, items: "DiagramStage", item_numbers: Sequence[int]
     ) -> "dict[RowAndStartingPointCount, Any]":
-        """Special points cached on this rank, by row, for the rows on which the half curves numbered
-        `item_numbers` start. items: work items of the current stage: half curves, or rows to be solved again,
-        which need no special points."""
+        """Special points cached on this rank for the rows of the diagram on which the half curves numbered
+        `item_numbers` start. items: half curves, or rows to be solved again, which need no special points."""
         from ...solve.branch.special.detached_rows import RowsWithDetachedBranches
 
         if isinstance(items, RowsWithDetachedBranches):
@@ -91,15 +89,15 @@ class DiagramCurveSolver:
         return {key: self.special_points_by_row[key] for key in keys if key in self.special_points_by_row}
 
     def cache_starts(self, starts: "Mapping[RowAndStartingPointCount, Any]") -> None:
-        """Caches special points of rows solved on other ranks."""
+        """Caches the special points `starts` of rows of the diagram that were solved on other ranks."""
         self.special_points_by_row.update(starts)
 
     def work_items(self, view: ResultView, results: Mapping[int, NamedArrays]) -> "DiagramStage | None":
         """The current stage of the search for curves of folds and torus points of cycles; None if these
-        curves are not requested, or if fewer than two rows have a finite value.
+        curves are not requested, or if fewer than two rows of the diagram have a finite row parameter.
 
-        view: the result file with all rows. results: results of half curves and rows so far, by number.
-        """
+        view: the result file with all rows. results: results of the half curves and rows solved so far, by
+        number of the work item."""
         stages = self._stages(view)
         return stages.stages(results)[-1] if stages is not None else None
 
@@ -133,13 +131,14 @@ class DiagramCurveSolver:
 
     @property
     def _limits_along_row(self) -> tuple[float, float]:
-        """Smallest and largest value of the parameter along the rows."""
+        """Smallest and largest value of the parameter that varies along a row of the diagram."""
         values = self.task.values_along_row
         return float(values.min()), float(values.max())
 
     def solve_item(self, items: "DiagramStage", item: int) -> dict[str, np.ndarray]:
-        """Result of the work item number `item`: of a half curve, arrays with the shapes of
-        `TracedHalfCurve`; of a row that is solved again, its variables, and its message as bytes."""
+        """Result of the work item number `item`. For a half curve: arrays with the shapes of
+        `TracedHalfCurve`. For a row of the diagram that is solved again: its variables, and its message as
+        bytes."""
         from ...determinant.arm.determinant import forget_arm_determinants
         from ...solve.branch.special.detached_rows import RowsWithDetachedBranches
         from ...solve.branch.special.folds_beyond_range import FoldsBeyondRange
@@ -156,17 +155,17 @@ class DiagramCurveSolver:
         return named_arrays_of_solved_row(row, self.task.coexistence_row_values(row))
 
     def empty_result(self, items: "DiagramStage") -> dict[str, np.ndarray]:
-        """Result of a half curve without points, arrays of shape (0, ...); no variables for a row, which is
-        then unchanged."""
+        """Result that stands for a failed work item: a half curve without points, arrays of shape (0, ...),
+        or no variables of a row of the diagram, which then stays unchanged."""
         from ...solve.branch.special.special_curve_tracer import SpecialCurveTracer
         from ...solve.branch.special.special_curves import TracedHalfCurve
 
         return TracedHalfCurve(None).arrays() if isinstance(items, SpecialCurveTracer) else {}
 
     def result(self, view: ResultView, results: Mapping[int, NamedArrays]) -> SweepWideResult:
-        """All curves as variables of the file, and the rows that are changed because curves lead to further
-        branches; both empty if there are no curves, because `plane` is None. view: the file with all rows.
-        results: results of all half curves and rows by number, as from `solve_item`."""
+        """All curves as variables of the file, and the rows of the diagram that change because curves reveal
+        further branches; both empty without a `plane`. view: the file with all rows. results: results of all
+        half curves and rows by number of the work item, as from `solve_item`."""
         from ...determinant.arm.determinant import forget_arm_determinants
 
         forget_arm_determinants()
@@ -209,12 +208,13 @@ class DiagramCurveSolver:
 
     @property
     def _is_row_parameter_finite(self) -> np.ndarray:
-        """Whether the value of the row's parameter is finite, (rows,)."""
+        """Whether the value of the row parameter is finite, for each row of the diagram, (rows,)."""
         return np.isfinite(self.task.points.columns_by_name[self.task.config.plane_parameters[1]])
 
     @property
     def plane(self) -> "ParameterPlane | None":
-        """Plane of the diagram's two parameters; None if fewer than two rows have a finite value."""
+        """Plane of the diagram's two parameters; None if fewer than two rows have a finite value of the row
+        parameter."""
         from ...determinant.parameter_plane import ParameterPlane, PlaneAxis
 
         line_parameter, row_parameter = self.task.config.plane_parameters
@@ -236,8 +236,8 @@ class DiagramCurveSolver:
     def _special_points(
         self, items: "SpecialCurveTracer | FoldsBeyondRange", number: int
     ) -> "tuple[SpecialPoint, ...]":
-        """Special points of the branches of the row `number`, within the range and beyond, cached or computed
-        again; () if the row's rod is crushed. items: half curves that start at these points, or rows."""
+        """Special points of the branches of the row number `number` of the diagram, within the range and
+        beyond; () if the row's rod is crushed. items: half curves that start at these points, or rows."""
         from ...solve.branch.coexistence import row_branches, special_points_of
 
         starts = items.branch_starts_of_row(number)

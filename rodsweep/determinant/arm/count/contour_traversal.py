@@ -1,8 +1,9 @@
 """Traversal of the contour of a count of an arm's eigenvalues: the nodes, and the change of arg D between
 them.
 
-The phase between two nodes follows from the tangents log D(w) + L (v - w), L = D'/D, of log D(v) at both
-nodes w, if the error of each tangent is below pi/2 at a common point between the nodes.
+The nodes are points w on the contour. The change of phase between two nodes follows from the tangents log
+D(w) + L (v - w), L = D'/D, of log D(v) at both nodes w, if the error of each tangent is below pi/2 at a
+common point between the nodes.
 """
 
 import cmath
@@ -24,9 +25,10 @@ class ContourTraversal(NamedTuple):
     `distance_on_side` from the start of this side.
 
     phase_change: change of arg D so far. node_count: number of nodes so far. last_node: the last node.
-    valid_radius_growth: change of the valid radius per distance. distance_to_next_node: distance from the
-    last node to the next node, 0 if not chosen yet. required_w_bound: |w| for which propagators are needed to
-    continue; 0 at the end, inf if the change of phase is not determined.
+    valid_radius_growth: change per distance of the valid radius of a node, within which the tangent of log D
+    at the node has an error below pi/2. distance_to_next_node: distance from the last node to the next node,
+    0 if not chosen yet. required_w_bound: |w| for which propagators are needed to continue; 0 at the end, inf
+    if the change of phase is not determined.
     """
 
     side_number: int
@@ -49,9 +51,10 @@ def continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one w
     level: PropagatorsUpToW,
 ) -> ContourTraversal:
     """Continues a traversal of the box to the end, or until propagators for another |w| are needed. box:
-    (corners, largest |w| for which propagators are known to exist). known_w: eigenvalues divided out of D,
-    (n,). level: (W, propagators) in use. samples: samples of the arm's coefficients, which give the lengths
-    over which D changes and the dominant wave."""
+    (corners, largest |w| for which propagators are known to exist). known_w: known eigenvalues, (n,), by
+    whose factors D is divided. level: (W, propagators) in use, valid for |w| <= W. samples: two samplings of
+    the arm's coefficients, one for the change of w over which D changes, one for the dominant exponential of
+    D."""
     corners, largest_w = box
     side, t, change, nodes, node, growth, step, _ = traversal
     while side < len(corners) - 1:
@@ -90,8 +93,8 @@ def _first_radius_and_required_w(
     w: complex, unit: float, last_radius: float, largest_w: float
 ) -> tuple[float, float]:
     """Returns (radius of the first circle about the node w, |w| for which propagators are needed). unit:
-    length over which D changes. last_radius: radius of the circle about the last node, 0 if the node has no
-    circle. largest_w: largest |w| for which propagators are known to exist."""
+    change of w over which D changes much. last_radius: radius of the circle about the last node, 0 if the
+    node has no circle. largest_w: largest |w| for which propagators are known to exist."""
     first = CONTOUR_SETTINGS.first_circle_radius_over_w_scale * unit
     radius = first
     if last_radius > 0:
@@ -104,8 +107,8 @@ def _first_radius_and_required_w(
 
 @compiled
 def _is_phase_lost(node: PhaseNode, node_count: int) -> bool:
-    """Whether the phase is lost, because the valid radius of the node is too small or there are too many
-    nodes."""
+    """Whether the phase cannot be followed further, because the radius within which the tangent of log D at
+    the node is valid is too small, or because there are too many nodes."""
     min_radius = CONTOUR_SETTINGS.min_valid_radius_over_w * abs(node.w)
     # Negated, so that a valid radius of nan counts as lost.
     return not node.valid_radius > min_radius or node_count > CONTOUR_SETTINGS.max_nodes
@@ -122,9 +125,9 @@ def _are_propagators_reusable(W: float, required_W: float) -> bool:
 
 @compiled
 def _distance_to_next_node(reach: float, growth: float) -> float:
-    """Distance to the next node: `distance_over_sum_of_valid_radii` times the sum of the current valid radius
-    and of the valid radius expected at the next node. reach: the current valid radius. growth: expected
-    change of the valid radius per distance, here limited to the range from -1 to
+    """Distance to the next node: `distance_over_sum_of_valid_radii` times the sum of the valid radii
+    (`PhaseNode`) of the current and of the next node. reach: valid radius of the current node. growth:
+    expected change of the valid radius per distance, here limited to the range from -1 to
     `max_valid_radius_growth`."""
     overlap = CONTOUR_SETTINGS.distance_over_sum_of_valid_radii
     return (
@@ -134,8 +137,9 @@ def _distance_to_next_node(reach: float, growth: float) -> float:
 
 @compiled
 def _shortened_distance_to_next_node(reach: float, growth: float, distance: float) -> float:
-    """A distance to the next node below `distance`. Repeated calls lead to a distance below `reach`, the
-    valid radius. growth: expected change of the valid radius per distance."""
+    """A distance to the next node that is smaller than `distance`, at which the next node was too far.
+    Repeated calls lead to a distance below `reach`, the valid radius of the current node (`PhaseNode`).
+    growth: expected change of the valid radius per distance."""
     shorter_distance = min(
         _distance_to_next_node(reach, growth), CONTOUR_SETTINGS.max_shortened_over_previous_step * distance
     )
@@ -148,7 +152,8 @@ def _shortened_distance_to_next_node(reach: float, growth: float, distance: floa
 
 @compiled
 def _phase_change_between(node: PhaseNode, next_node: PhaseNode, samples: ExponentSamples) -> float:
-    """The change of arg D between two nodes with overlapping discs, from their tangents and values of D."""
+    """The change of arg D between two nodes whose discs of valid radius overlap, from the tangents of log D
+    and the values of D at both nodes."""
     fraction = node.valid_radius / (node.valid_radius + next_node.valid_radius)
     middle_w = node.w + fraction * (next_node.w - node.w)
     # The tangents at both nodes predict the change. The values of D give the remainder, which is below pi

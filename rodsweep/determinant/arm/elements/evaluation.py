@@ -1,6 +1,8 @@
 """Propagators of elements at one z = w/W, from polynomials in z, and their products with minors.
 
-A propagator has the MINOR_COUNT^2 entries of its columns one after the other, and then zeros up to
+The minors are the 2 x 2 determinants of rows of two solutions of the eigenproblem (compound matrix method,
+see `minor_rates`); a propagator is the matrix that multiplies them from one end of an element to the other. A
+propagator has the MINOR_COUNT^2 entries of its columns one after the other, and then zeros up to
 PROPAGATOR_LENGTH: loops over PROPAGATOR_LENGTH entries are whole vector instructions. Real and imaginary
 parts are separate rows, so that a sum over powers of z is a vector instruction over the entries. Arrays at
 real z have no imaginary parts.
@@ -17,12 +19,14 @@ from .minor_rates import PROPAGATOR_LENGTH
 from .settings import ARM_ELEMENT_SETTINGS, MINOR_COUNT
 
 RE, IM, RE_SLOPE, IM_SLOPE = range(4)
-"""Rows of powers and of propagators: real and imaginary parts of the value and of its derivative by z."""
+"""Indices, in arrays of powers and of propagators, of the real and imaginary parts of the value and of its
+derivative with respect to z."""
 
 
 @compiled
 def _non_negligible_power_count(size: float, terms: int) -> int:
-    """Number of powers of z that are not negligible in C and dC/dz at |z| = size, at most `terms`."""
+    """Number of powers of z that are not negligible in C and dC/dz at |z| = `size`; at most `terms`, the
+    number of powers in the polynomials."""
     count = terms
     while count > 2 and size <= ARM_ELEMENT_SETTINGS.largest_z_by_term_count[count - 1]:
         count -= 1
@@ -31,8 +35,8 @@ def _non_negligible_power_count(size: float, terms: int) -> int:
 
 @compiled
 def powers_and_derivatives(z: complex, terms: int) -> Array:
-    """The powers z^n that are not negligible, and their derivatives n z^(n-1): real and imaginary parts, (n,
-    4). terms: number of powers in the polynomials."""
+    """The powers z^n that are not negligible, and their derivatives n z^(n-1): real and imaginary parts of
+    both, (powers, 4), in the order RE, IM, RE_SLOPE, IM_SLOPE. terms: number of powers in the polynomials."""
     powers = np.zeros((_non_negligible_power_count(abs(z), terms), 4))
     powers[0, RE] = 1.0
     for n in range(1, len(powers)):
@@ -48,8 +52,8 @@ def powers_and_derivatives(z: complex, terms: int) -> Array:
 
 @compiled_with_reordered_sums
 def fill_propagator_and_derivative(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes a propagator C and dC/dz into out, (4, PROPAGATOR_LENGTH). polynomial, powers: see the module
-    docstring."""
+    """Writes a propagator C and dC/dz into out, (4, PROPAGATOR_LENGTH). polynomial, powers: coefficients of
+    the element and powers of z, see the module docstring."""
     for k in range(PROPAGATOR_LENGTH):
         out[RE, k] = polynomial[0, k]
         out[IM, k] = out[RE_SLOPE, k] = out[IM_SLOPE, k] = 0.0
@@ -72,21 +76,23 @@ def fill_propagator_and_derivative(polynomial: Array, powers: Array, out: Array)
 
 @compiled_with_reordered_sums
 def fill_propagator_value(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes a propagator C, without dC/dz, into out, (2, PROPAGATOR_LENGTH). polynomial, powers: see the
-    module docstring."""
+    """Writes a propagator C, without dC/dz, into out, (2, PROPAGATOR_LENGTH). polynomial, powers:
+    coefficients of the element and powers of z, see the module docstring."""
     _fill_power_sums(polynomial, powers, (RE, IM), out)
 
 
 @compiled_with_reordered_sums
 def fill_real_propagator_and_derivative(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes a propagator C and dC/dz at real z into out, (2, PROPAGATOR_LENGTH). polynomial, powers: see the
-    module docstring."""
+    """Writes a propagator C and dC/dz at real z into out, (2, PROPAGATOR_LENGTH). polynomial, powers:
+    coefficients of the element and powers of z, see the module docstring."""
     _fill_power_sums(polynomial, powers, (RE, RE_SLOPE), out)
 
 
 @compiled_with_reordered_sums
 def _fill_power_sums(polynomial: Array, powers: Array, rows: tuple[int, int], out: Array) -> None:
-    """Writes sum_n powers[n, row] polynomial[n], for each of two `rows`, into out, (2, PROPAGATOR_LENGTH)."""
+    """Writes sum_n powers[n, i] polynomial[n] into out[k], where i = rows[k] is one of RE, IM, RE_SLOPE,
+    IM_SLOPE. powers: (terms, 4). polynomial: (at least as many terms, PROPAGATOR_LENGTH). out: (2,
+    PROPAGATOR_LENGTH)."""
     i, j = rows
     for k in range(PROPAGATOR_LENGTH):
         out[0, k] = powers[0, i] * polynomial[0, k]
@@ -114,8 +120,8 @@ def _fill_power_sums(polynomial: Array, powers: Array, rows: tuple[int, int], ou
 
 @compiled_with_reordered_sums
 def fill_real_propagator_value(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes a propagator C at real z, without dC/dz, into out, (PROPAGATOR_LENGTH,). polynomial, powers: see
-    the module docstring."""
+    """Writes a propagator C at real z, without dC/dz, into out, (PROPAGATOR_LENGTH,). polynomial, powers:
+    coefficients of the element and powers of z, see the module docstring."""
     for k in range(PROPAGATOR_LENGTH):
         out[k] = polynomial[0, k]
     terms = len(powers)
@@ -137,8 +143,8 @@ def fill_real_propagator_value(polynomial: Array, powers: Array, out: Array) -> 
 
 @compiled_with_reordered_sums
 def apply_propagator(C: Array, x: Array, out: Array) -> None:
-    """out = C x for a propagator C, (2 or more, PROPAGATOR_LENGTH), and minors x and out, (2,
-    MINOR_COUNT)."""
+    """out = C x for a propagator C, (2 or more, PROPAGATOR_LENGTH). x, out: minors at the start and at the
+    end of the element, (2, MINOR_COUNT)."""
     for i in range(MINOR_COUNT):
         out[0, i] = out[1, i] = 0.0
     for j in range(MINOR_COUNT):
@@ -177,8 +183,9 @@ def apply_transposed_real_propagator(C: Array, x: Array, out: Array) -> None:
 
 @compiled_with_reordered_sums
 def propagate_tangent(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
-    """out = C t + change x for propagators C, change, (2 or more, PROPAGATOR_LENGTH), minors t, x, out, (2,
-    MINOR_COUNT)."""
+    """out = C t + change x: derivative of the minors C x at the end of an element, from the minors x and
+    their derivative t at its start. C, change: a propagator and its derivative, (2 or more,
+    PROPAGATOR_LENGTH). t, x, out: (2, MINOR_COUNT)."""
     for i in range(MINOR_COUNT):
         out[0, i] = out[1, i] = 0.0
     for j in range(MINOR_COUNT):
@@ -194,7 +201,8 @@ def propagate_tangent(C: Array, t: Array, change: Array, x: Array, out: Array) -
 
 @compiled_with_reordered_sums
 def apply_real_propagator(C: Array, x: Array, out: Array) -> None:
-    """out = C x for a real propagator C, (PROPAGATOR_LENGTH,), and real minors x and out, (MINOR_COUNT,)."""
+    """out = C x for a real propagator C, (PROPAGATOR_LENGTH,). x, out: real minors at the start and at the
+    end of the element, (MINOR_COUNT,)."""
     for i in range(MINOR_COUNT):
         out[i] = 0.0
     for j in range(MINOR_COUNT):
@@ -205,8 +213,8 @@ def apply_real_propagator(C: Array, x: Array, out: Array) -> None:
 
 @compiled_with_reordered_sums
 def propagate_real_tangent(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
-    """out = C t + change x for real propagators C, change, (PROPAGATOR_LENGTH,), and minors t, x, out,
-    (MINOR_COUNT,)."""
+    """As `propagate_tangent`, out = C t + change x, for real propagators: C, change: (PROPAGATOR_LENGTH,). t,
+    x, out: (MINOR_COUNT,)."""
     for i in range(MINOR_COUNT):
         out[i] = 0.0
     for j in range(MINOR_COUNT):

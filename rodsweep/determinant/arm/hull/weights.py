@@ -1,4 +1,6 @@
-"""Bounds for the hull of `rodsweep.determinant.arm.hull.hull`, from constant or smooth weights alpha."""
+"""Bounds of the norms that determine the hull, the region that contains the spectrum of an arm, from constant
+or smooth weights alpha (`rodsweep.determinant.arm.hull.hull`). coefficients: nu, c2, c3, gamma2, gamma3 and g
+= nu + F c2, along the first axis."""
 
 from math import exp, inf, log, sqrt
 
@@ -13,8 +15,8 @@ from .region import HULL_SETTINGS
 @compiled
 def smallest_squared_norm(alphas: Array, coefficients: Array, max_weighted_force: float) -> float:
     """The smallest a^2 of the constant weights `alphas`, (n,). a: largest norm, along all arms, of the matrix
-    given in `rodsweep.determinant.arm.hull.hull`. coefficients: coefficients at all points, (6, points).
-    max_weighted_force: the largest F^2 c3/gamma2."""
+    given in `rodsweep.determinant.arm.hull.hull`. coefficients: nu, c2, c3, gamma2, gamma3 and g at all
+    points, (6, points). max_weighted_force: the largest F^2 c3/gamma2 at these points."""
     smallest = inf
     for alpha in alphas:
         largest_norm = alpha * max_weighted_force
@@ -33,8 +35,8 @@ def smallest_squared_norm(alphas: Array, coefficients: Array, max_weighted_force
 @compiled
 def trial_constant_weights(coefficients: Array) -> Array:
     """Constant weights alpha to try, (HULL_SETTINGS.constant_weight_count + 1,): a geometric progression from
-    the smallest to the largest |g/nu| along the arms, none below `min_constant_weight`, and 1. coefficients:
-    coefficients, (6, n, pieces, points)."""
+    the smallest to the largest |g/nu| along the arms, none below `min_constant_weight`, and the weight 1.
+    coefficients: nu, c2, c3, gamma2, gamma3 and g of n arms, (6, n, pieces, points)."""
     ratio = np.abs(coefficients[5] / coefficients[0])
     start = log(max(ratio.min(), HULL_SETTINGS.min_constant_weight))
     # At least twice the smallest weight, so that the progression has a length even if all ratios are tiny.
@@ -49,12 +51,13 @@ def trial_constant_weights(coefficients: Array) -> Array:
 def squared_norms_of_varying_weights(
     F: Array, lengths: Array, coefficients: Array, derivative: Array
 ) -> Array:
-    """a^2 of each weight alpha(u) = g/(nu + f |F| sqrt(c2 c3 gamma3/gamma2)), f from
-    `HULL_SETTINGS.load_term_factors`: the largest squared norm of the hull's matrix along all arms,
-    (factors,).
+    """For each weight alpha(u) = g/(nu + f |F| sqrt(c2 c3 gamma3/gamma2)), f from
+    `HULL_SETTINGS.load_term_factors`, a^2: the largest squared norm, along all arms, of the matrix given in
+    `rodsweep.determinant.arm.hull.hull`, (factors,).
 
-    F: (n,). lengths: (pieces,). coefficients: coefficients, (6, n, pieces, points). derivative:
-    (points, points), matrix of `ChebyshevMatrices`.
+    F: forces of n arms, (n,). lengths: lengths of the intervals between breaks of the profile, (pieces,).
+    coefficients: nu, c2, c3, gamma2, gamma3 and g, (6, n, pieces, points). derivative: differentiation matrix
+    of `ChebyshevMatrices`, (points, points).
     """
     squared_norms = np.zeros(len(HULL_SETTINGS.load_term_factors))
     points = coefficients.shape[3]
@@ -92,7 +95,8 @@ def four_c_squared_from_clamp(
 
     c bounds the term with theta by the clamp theta(0) = 0, without rotational drag
     (`rodsweep.determinant.arm.hull.hull`). F: forces, (n,). lengths: lengths of the intervals between breaks,
-    (pieces,). coefficients: (6, n, pieces, points). integral: matrix of `ChebyshevMatrices`.
+    (pieces,). coefficients: nu, c2, c3, gamma2, gamma3 and g, (6, n, pieces, points). integral: matrix of
+    `ChebyshevMatrices`.
     """
     squared_integrals = np.zeros(len(alphas))
     points = coefficients.shape[3]

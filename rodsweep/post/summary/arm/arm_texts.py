@@ -1,7 +1,7 @@
 """Results about an arm for `rodsweep show`: quantities, variables in SI units of every task, thresholds.
 
-Loads and lengths are in the units typed by the user, frequencies in Hz. All powers of an answer have the same
-unit.
+Loads and lengths are in the units typed by the user, frequencies in Hz. All powers of an answer are in the
+same unit, such as mW.
 """
 
 from collections.abc import Mapping, Sequence
@@ -215,8 +215,8 @@ def arm_threshold_sentences(
     view: ResultView, kind: str, thresholds: Sequence[tuple[LocatedThreshold, np.ndarray]]
 ) -> list[str]:
     """List with a sentence on the thresholds of the given kind, with load and frequency; empty for a rod, or
-    if `thresholds` is empty. thresholds: pairs of a threshold and the indices of the points on its line,
-    (points,)."""
+    if `thresholds` is empty. thresholds: pairs of a threshold and the indices, (points,), of the points along
+    whose line it was found; these points differ in F only."""
     if not view.quantities or not thresholds:
         return []
     points = np.concatenate([points for _, points in thresholds])

@@ -3,10 +3,11 @@
 The matrix at the prediction of a cycle serves for Newton's method, but its tangent and its multipliers have
 errors of the size of the prediction error. Both are corrected with derivatives of the residual at the cycle
 itself and with the factors of the matrix, so that no further matrix is factorised. The multipliers are Ritz
-values of the map G = S^-1 P of the cycle (S: symmetry, P: propagator over the solved time interval) on the
-right and left invariant subspaces of the matrix. Their error is of second order in the distance of the cycle
-from the matrix, because it is the product of the errors of both subspaces. Each further pass improves the
-right subspace, by one power of G. The last changes show the errors that are left. Shapes: as in `matrix`.
+values of the map G = S^-1 P of the cycle on the right and left invariant subspaces of the matrix. S:
+symmetry. P: propagator over the solved part of the period, which is half a period for a symmetric orbit. The
+error of the Ritz values is of second order in the distance of the cycle from the orbit of the matrix, because
+it is the product of the errors of both subspaces. Each correction multiplies the right subspace by G, which
+reduces its error. The size of the last corrections gives the error estimate. Shapes: as in `matrix`.
 """
 
 from dataclasses import dataclass
@@ -32,11 +33,12 @@ class LinearisationCorrectionSettings:
     """Settings for the correction of tangent and multipliers with the matrix of a nearby orbit."""
 
     max_distance_from_matrix_orbit: float = 1e-2
-    """Largest relative distance between a cycle and the orbit of the matrix for which a correction is tried;
-    at larger distances it rarely converges."""
+    """Largest relative distance between a cycle and the orbit at which the nearby matrix was assembled, for a
+    correction to be tried; at larger distances corrections rarely converge."""
     min_corrected_multiplier_modulus: float = 1e-3
-    """Multipliers over the solved part with smaller moduli are not corrected: the errors of these multipliers
-    have no effect on stability or special points."""
+    """Multipliers over the solved part of the period, half a period for a symmetric orbit, are not corrected
+    if their moduli are smaller: the errors of these multipliers have no effect on stability or special
+    points."""
     tangent_tolerance: float = 1e-5
     """Relative tolerance of the tangent, which serves for predictions and for the signs at folds."""
     max_correction_steps: int = 4
@@ -50,9 +52,9 @@ LINEARISATION_CORRECTION_SETTINGS = LinearisationCorrectionSettings()
 class CorrectedLinearisation:
     """Tangent and multipliers at `orbit`, corrected with the factors of the nearby matrix `nearby_matrix`.
     corrected_tangent: tangent of the branch, (N + 1,), of unit arc length.
-    multipliers_over_solved_time_interval: multipliers over the solved part of the period, (multipliers,).
-    relative_error: estimate of the error of the multipliers, divided by the larger of 1 and the largest
-    modulus."""
+    multipliers_over_solved_time_interval: multipliers over half a period for a symmetric orbit, else over the
+    whole period, (multipliers,). relative_error: estimate of the error of the multipliers, divided by the
+    larger of 1 and the largest modulus."""
 
     orbit: Orbit
     nearby_matrix: BorderedMatrix
@@ -135,14 +137,16 @@ def _relative_tangent_change(matrix: BorderedMatrix, orbit: Orbit, tangent: Arra
 
 
 class _CorrectedInvariantSubspaces:
-    """Right and left invariant subspaces of the map G over the solved part for the multipliers with moduli of
-    at least `LINEARISATION_CORRECTION_SETTINGS.min_corrected_multiplier_modulus`, and the Ritz values of G on
-    these subspaces. increments: changes of the orbit if its start changes by the basis vectors of the right
+    """Right and left invariant subspaces of the map G over the solved part of the period (see the module
+    docstring) for the multipliers with moduli of at least
+    `LINEARISATION_CORRECTION_SETTINGS.min_corrected_multiplier_modulus`, and the Ritz values of G on these
+    subspaces. increments: changes of the orbit if its start changes by the basis vectors of the right
     subspace, (k, N + 1)."""
 
     def __init__(self, matrix: BorderedMatrix, right: Array, left: Array, values: Complex) -> None:
         """right, left: real bases of the subspaces at the orbit of `matrix`, (k, n) each. values: multipliers
-        of the matrix over the solved part, (multipliers,), with the k multipliers of the subspaces first."""
+        of the matrix over the solved part of the period, (multipliers,), with the k multipliers of the
+        subspaces first."""
         self._matrix = matrix
         self._left = left
         self._products = left @ right.T
@@ -155,8 +159,9 @@ class _CorrectedInvariantSubspaces:
 
     @classmethod
     def at_matrix(cls, matrix: BorderedMatrix) -> "_CorrectedInvariantSubspaces | None":
-        """The subspaces at the orbit of `matrix`; None if no multiplier is corrected, if rounding separates a
-        pair of multipliers at the smallest modulus, or if the map is not finite."""
+        """The subspaces at the orbit of `matrix`. None if no multiplier is large enough to be corrected, if
+        the propagator is not finite, or if rounding errors put the two multipliers of a pair on different
+        sides of the smallest corrected modulus."""
         orbit = matrix.orbit
         G = orbit.symmetry.apply_inverse_to_flow(matrix.propagator, orbit.form.layout)
         Q, R = low_rank_factors(np.ascontiguousarray(G), FLOQUET_MULTIPLIER_SETTINGS.negligible_column_ratio)
@@ -174,7 +179,8 @@ class _CorrectedInvariantSubspaces:
 
     @property
     def multipliers(self) -> Complex:
-        """Multipliers over the solved part, (multipliers,): Ritz values and the neglected multipliers."""
+        """Multipliers over the solved part of the period, (multipliers,): the corrected Ritz values, then the
+        multipliers that are too small to be corrected."""
         return np.append(self._values, self._neglected)
 
     @property
@@ -184,8 +190,8 @@ class _CorrectedInvariantSubspaces:
 
     def correct_ritz_values(self, orbit: Orbit, end_changes: Array) -> float:
         """Corrects the Ritz values at the cycle `orbit`. Returns the largest change of a Ritz value, divided
-        by the larger of 1 and the largest modulus. end_changes: ends, (k, n), of
-        `BorderedMatrix.residual_variations` at this cycle for `increments`."""
+        by the larger of 1 and the largest modulus. end_changes: the `ends` that
+        `BorderedMatrix.residual_variations` returns at this cycle for the variations `increments`, (k, n)."""
         n = self._left.shape[1]
         ends = np.ascontiguousarray((self.increments[:, -2 - n : -2] + end_changes).T)
         images = orbit.symmetry.apply_inverse_to_flow(ends, orbit.form.layout)
@@ -199,9 +205,9 @@ class _CorrectedInvariantSubspaces:
         return change / max(1.0, float(np.abs(values).max()))
 
     def apply_map_to_right_subspace(self, columns: Array) -> None:
-        """Replaces the right subspace by its image under G. columns: stages, (K, s, k, n), from the call of
-        `BorderedMatrix.residual_variations` whose ends were passed to the last call of
-        `correct_ritz_values`."""
+        """Replaces the right subspace by its image under G. columns: the `columns` that
+        `BorderedMatrix.residual_variations` returned together with the `end_changes` of the last call of
+        `correct_ritz_values`, (K, s, k, n), for s stages of each of the K time intervals."""
         starts = np.ascontiguousarray(self._next_starts)
         self.increments = self.increments + self._matrix.orbit_increments_at_fixed_parameter(
             starts, np.ascontiguousarray(columns)
@@ -209,7 +215,8 @@ class _CorrectedInvariantSubspaces:
 
 
 def _is_multiplier_corrected(real: float, imaginary: float) -> bool:
-    """Whether a multiplier over the solved part is corrected. real, imaginary: its two parts."""
+    """Whether a multiplier over the solved part of the period is corrected. real, imaginary: its real and
+    imaginary part."""
     return bool(
         real**2 + imaginary**2 >= LINEARISATION_CORRECTION_SETTINGS.min_corrected_multiplier_modulus**2
     )

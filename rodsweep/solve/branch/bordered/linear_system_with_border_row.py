@@ -7,8 +7,9 @@ from ....arrays import Array
 
 
 class LinearSystemWithBorderRow:
-    """Linear system of M equations, the last of which changes. matrix: (M, M), whose last row is not used.
-    Successive systems mostly have equal borders; therefore the factors of the last system are kept."""
+    """Solver for linear systems of M equations that differ only in the last row of the matrix, the border.
+    matrix: (M, M); the last row is replaced by the border of each system. Successive systems mostly have
+    equal borders, so the factors of the last system are kept."""
 
     def __init__(self, matrix: Array) -> None:
         self._matrix = matrix

@@ -1,5 +1,5 @@
-"""Points of a curve of folds or torus points between two of its solved points: near a chord, on a row, or at
-a zero of a function."""
+"""Points of a curve of folds or torus points between two solved points: near a chord, at a value of the row
+parameter, or at a zero of a function."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -17,12 +17,14 @@ from .solved_curve_point import SEARCH_LINE_ALONG_BRANCH, SolvedCurvePoint, sear
 
 @dataclass(frozen=True, slots=True)
 class CurvePointSolver(ParameterRoles):
-    """Solver for points of a curve between two of its points. workspace: memory of Newton's matrices."""
+    """Solver for points of a curve of special points between two solved points of this curve. workspace:
+    memory of Newton's matrices."""
 
     workspace: NewtonWorkspace
 
     def cycle_family_at(self, point: SolvedCurvePoint) -> CycleFamily:
-        """The cycles near a point of the curve, with the roles of the parameters at this point."""
+        """The cycles near a point of the curve; `ParameterRoles` says which parameter is the branch parameter
+        at this point."""
         return CycleFamily.near_point(self.kind, self.axes_of(point)[1], point, self.workspace)
 
     def point_at_zero_between(
@@ -33,9 +35,9 @@ class CurvePointSolver(ParameterRoles):
         end_values: tuple[float, float],
         tolerance: float = SPECIAL_CURVE_END_SETTINGS.zero_margin_tolerance,
     ) -> SolvedCurvePoint:
-        """The point between `inner` and `outer`, with equal roles, at which `function` is 0; raises
-        Unsolvable. end_values: values of the function at `inner` and `outer`. tolerance: tolerance of the
-        function."""
+        """The point between `inner` and `outer` at which `function` is 0; `inner` and `outer` must have the
+        same branch parameter. Raises Unsolvable. end_values: values of the function at `inner` and `outer`.
+        tolerance: modulus of the function that is treated as 0."""
         points: dict[float, SolvedCurvePoint] = {0.0: inner, 1.0: outer}
 
         def value(fraction: float) -> float:
@@ -59,7 +61,8 @@ class CurvePointSolver(ParameterRoles):
         return self.cycle_family_at(second).corrected_point(start, row, line, second.normal_derivatives)
 
     def point_on_row(self, first: SolvedCurvePoint, second: SolvedCurvePoint, row: float) -> SolvedCurvePoint:
-        """Point of the curve between `first` and `second` at the row coordinate `row`; raises Unsolvable."""
+        """Point of the curve between `first` and `second` at the row coordinate `row`, the scaled value of
+        the row parameter, 0 to 1; raises Unsolvable."""
         inner, outer = map(self.with_unexchanged_roles, (first, second))
         length = outer.row_coordinate - inner.row_coordinate
         fraction = (row - inner.row_coordinate) / length if length else 0.0
@@ -84,7 +87,7 @@ class CurvePointSolver(ParameterRoles):
         self, inner: SolvedCurvePoint, outer: SolvedCurvePoint, row: float
     ) -> SolvedCurvePoint:
         """Point of the curve between `inner` and `outer` at the row coordinate `row` within a tolerance,
-        found with exchanged roles; raises Unsolvable."""
+        found with the row parameter as the branch parameter; raises Unsolvable."""
         ends = [self.with_roles(point, exchanged=True) for point in (inner, outer)]
 
         def distance(point: SolvedCurvePoint) -> float:

@@ -1,5 +1,5 @@
-"""Prediction of points of a curve of folds or torus points, by polynomials through points with equal roles of
-the parameters."""
+"""Prediction of points of a curve of folds or torus points, by polynomials through earlier points at which
+the same parameter is the branch parameter (`ParameterRoles`)."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -21,8 +21,8 @@ def predicted_orbit_and_row_coordinate(
     roles: ParameterRoles, points: Sequence[SolvedCurvePoint], length: float
 ) -> tuple[Orbit, float]:
     """Returns (orbit, row coordinate), predicted at the arc length `length` beyond the last of `points`, or
-    at a shorter arc length, before the rod is crushed; raises Unsolvable. roles: roles of the two
-    parameters."""
+    at a shorter arc length, before the rod is crushed; raises Unsolvable. The row coordinate is the scaled
+    value, 0 to 1, of the parameter that is not the branch parameter. roles: says which parameter this is."""
     last_points = points[-CURVE_IDENTITY_SETTINGS.max_extrapolation_points :]
     lengths = arc_lengths_from_last_point(last_points)
     weights = lagrange_weights(lengths, _length_before_crushing(roles, last_points, lengths, length))
@@ -36,7 +36,7 @@ def weighted_sum_of_curve_points(
     mesh: OrbitMesh,
 ) -> tuple[Orbit, float]:
     """Returns (orbit on `mesh`, row coordinate): sums over `points` with the weights `weights`, (points,);
-    raises Unsolvable."""
+    raises Unsolvable. roles: says which of the two parameters the row coordinate is."""
     values = np.dot(weights, [mesh.interpolated_orbit(point.orbit).values for point in points])
     row, parameters = _weighted_parameters(roles, points, weights)
     orbit = replace(mesh.interpolated_orbit(points[-1].orbit), values=values)
@@ -46,9 +46,9 @@ def weighted_sum_of_curve_points(
 def _length_before_crushing(
     roles: ParameterRoles, points: Sequence[SolvedCurvePoint], lengths: Array, length: float
 ) -> float:
-    """The arc length `length`, shortened so that the rod predicted beyond `points` keeps half of the crushing
-    margin; unchanged if the last point has less than half of this margin. lengths: arc lengths of the points,
-    (points,)."""
+    """The arc length `length`, shortened so that the rod predicted beyond `points` keeps half of the distance
+    `crushing_margin` from the crushing force; unchanged if the last point is nearer than this. lengths: arc
+    lengths of the points, (points,). roles: branch parameter and row parameter at the points."""
     from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
     def distance(length: float) -> float:
@@ -81,7 +81,7 @@ def _weighted_parameters(
     roles: ParameterRoles, points: Sequence[SolvedCurvePoint], weights: Sequence[float] | Array
 ) -> tuple[float, dict[str, float]]:
     """Returns (row coordinate, values of both parameters by name): sums over `points` with the weights
-    `weights`, (points,)."""
+    `weights`, (points,). roles: says which of the two parameters the row coordinate is."""
     branch_axis, row_axis = roles.axes_of(points[-1])
     row = float(np.dot(weights, [point.row_coordinate for point in points]))
     value = float(np.dot(weights, [point.branch_parameter_value for point in points]))

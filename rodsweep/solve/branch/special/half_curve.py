@@ -1,4 +1,5 @@
-"""One half of a curve of folds or torus points: its points, and its crossings with the rows of a diagram."""
+"""One half of a curve of folds or torus points in the plane of a phase diagram: its points, and its crossings
+with the rows, the lines of constant second parameter."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
@@ -21,9 +22,9 @@ def trace_half_curve(
 ) -> TracedHalfCurve:
     """One half of a curve, from the point in `located` that agrees with `special_point`; in the result,
     `half_curve` is None if no point agrees or after a failure. problem: plane, kind and first direction of
-    the half curve. located: special points of the row, with cycles. special_points: special points of all
-    rows. values_of_rows_with_known_branches: value of the row parameter, by index, of the rows whose branches
-    are all known."""
+    the half curve. located: special points, with cycles, of the row of `special_point`. special_points:
+    special points of all rows of the diagram. values_of_rows_with_known_branches: value of the row parameter,
+    by row index, for the rows whose branches are all known."""
     row_length = abs(problem.axis_along_row.parameter_per_scaled_coordinate(special_point.parameter_value))
     # The stored point has no cycle; the located point that has one is recognised by its values.
     matches = [
@@ -55,11 +56,12 @@ def _point_distances_and_row_crossings(
     special_points: Sequence[RowSpecialPoint],
     values_of_rows_with_known_branches: Mapping[int, float],
 ) -> tuple[dict[int, float], tuple[RowCrossing, ...]]:
-    """Returns (distances, crossings). distances: distance along the row, in row lengths, of each special
-    point that lies on the curve through `points`, by its index. crossings: crossings with complete rows at
-    which no special point lies. special_points: special points of all rows.
-    values_of_rows_with_known_branches: value of the row parameter, by index, of the rows whose branches are
-    all known."""
+    """Returns (distances, crossings). distances: for each special point that lies on the curve through
+    `points`, by its index, its distance along the row from the curve, as a fraction of the parameter range of
+    the row. crossings: crossings of the curve with rows whose branches are all known, if no special point of
+    the row lies there. special_points: special points of all rows of the diagram.
+    values_of_rows_with_known_branches: value of the row parameter, by row index, for the rows whose branches
+    are all known."""
     indices_by_row: dict[int, list[int]] = {}
     for i, special_point in enumerate(special_points):
         if special_point.kind == problem.kind:
@@ -105,8 +107,9 @@ def _point_distances_and_row_crossings(
 def _distances_along_row(
     problem: SpecialCurveProblem, crossing: SolvedCurvePoint, special_points: Mapping[int, RowSpecialPoint]
 ) -> dict[int, float]:
-    """Distance along the row, in row lengths, of each point of `special_points` that agrees with the point
-    `crossing` of a curve on the same row."""
+    """Distance along the row, as a fraction of the parameter range of the row, from the point `crossing` of a
+    curve to each of `special_points` on the same row that agrees with it. Keys: index of the special
+    point."""
     coordinate = problem.axis_along_row.scaled_coordinate(crossing.branch_parameter_value)
     distances = {
         i: abs(coordinate - problem.axis_along_row.scaled_coordinate(special_point.parameter_value))

@@ -45,8 +45,8 @@ class ArmPathSettings:
     """No modes are followed where the estimate `expected_unstable_count` exceeds this number: at most 13
     modes can be followed, and the estimate is 0.9 to 1.9 times the true number."""
     family_W_over_max_abs_eigenvalue: float = 4.0
-    """Bound W of |w| of a family of arms for crossings, divided by the largest known |w|; for the eigenvalues
-    themselves, twice the known |w| would suffice."""
+    """Bound W of |w| up to which the interpolated propagators of an arm family are valid, for crossings,
+    divided by the largest known |w|. For the eigenvalues themselves, twice the known |w| would suffice."""
     max_known_count_distance_fraction: float = 0.25
     """A known count replaces a count in the middle of an interval if the distance of its path variable from
     the middle is less than this fraction of the interval's length."""
@@ -71,7 +71,8 @@ class ArmPath(PathEigenproblem):
         self._determinant_along_path = ArmAlongPath(path, self._arm_family_at)
 
     def _arm_family_at(self, p: float) -> ArmFamily | None:
-        """The family of arms whose interval contains p; None if there is no family."""
+        """The family of arms (interpolated propagators, `ArmFamily`) whose interval of the path contains p;
+        None if there is no such family."""
         family = next(
             (candidate for candidate in self._families if candidate.p_low <= p <= candidate.p_high), None
         )
@@ -84,8 +85,8 @@ class ArmPath(PathEigenproblem):
         return family
 
     def ensure_arm_family(self, low: float, high: float, largest_modulus: float) -> None:
-        """Creates a family of arms from `low` to `high` for eigenvalues up to |w| = `largest_modulus`, if
-        possible and if no stored family suffices."""
+        """Creates a family of arms, that is, interpolated propagators for all arms from `low` to `high`, for
+        eigenvalues up to |w| = `largest_modulus`, if possible and if no stored family suffices."""
         W = ARM_PATH_SETTINGS.family_W_over_max_abs_eigenvalue * largest_modulus
         if any(
             # A family serves eigenvalues up to half of its W, so that Newton's iterates stay within W.

@@ -1,5 +1,5 @@
-"""A boundary of the spectrum in a plane of rods, as a problem for
-`continuation.curve.follow_curve`.
+"""A curve in a plane of two parameters on which the straight rod has a Hopf point or a double real
+eigenvalue, as a problem for `continuation.curve.follow_curve`.
 
 Each point of the curve has a unit tangent. A curve ends at an edge of the plane, at a crushed rod, where it
 closes, or where it cannot be followed.
@@ -55,7 +55,8 @@ class BoundaryCurveSettings:
 
 BOUNDARY_CURVE_SETTINGS = BoundaryCurveSettings()
 CRUSHED_MARGIN_INDEX = 4
-"""Index of the margin that is negative for a crushed rod; the four edges of the plane have indices 0 to 3."""
+"""Index of the entry of `margins_to_curve_end` that is negative for a crushed rod; the entries 0 to 3 are the
+distances from the four edges of the plane."""
 
 
 class BoundaryEndReason(IntEnum):
@@ -87,7 +88,8 @@ class BoundaryPoint(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class BoundaryCurveProblem:
-    """A boundary of the spectrum, as a problem for `follow_curve`."""
+    """A curve in a plane of two parameters on which the straight rod has a Hopf point or a double real
+    eigenvalue, as a problem for `follow_curve`."""
 
     boundary: StabilityBoundary
 
@@ -120,8 +122,9 @@ class BoundaryCurveProblem:
     def point_at_zero_margin(
         self, previous: Sequence[BoundaryPoint], outer: BoundaryPoint, margin: int
     ) -> BoundaryPoint | None:
-        """The point on the edge `margin` crossed by the step from the last of `previous` to `outer`; None for
-        a crushed rod. Raises Unsolvable if the point is not found or lies beyond a second edge."""
+        """The point on the edge with the index `margin` that is crossed by the step from the last of
+        `previous` to `outer`; None if `margin` stands for a crushed rod. Raises Unsolvable if the point is
+        not found or lies beyond a second edge."""
         if margin == CRUSHED_MARGIN_INDEX:
             return None
         # The margins are x, 1 - x, y and 1 - y: the quotient is the axis, the remainder the edge.

@@ -26,20 +26,21 @@ class AmplitudeEquationSettings:
     """The final amplitude of a motion is predicted instead of integrated if the linear and the measured
     growth per return are at most this number in modulus."""
     min_cubic_growth_over_noise: float = 10.0
-    """A new measurement replaces an earlier c if |c| a^2 exceeds this number times the noise
-    (`AmplitudeEquation.growth_error`), so that the noise is at most a tenth of c a^2. A c measured within the
-    noise may have the wrong sign."""
+    """A new measurement of c in the growth g = g0 - c a^2, a: amplitude, replaces an earlier c if |c| a^2
+    exceeds this number times the noise (`AmplitudeEquation.growth_error`), so that the noise is at most a
+    tenth of c a^2. A c measured within the noise may have the wrong sign."""
     min_scaling_factor_change: float = 0.1
     """The state is not scaled if the factor to the predicted amplitude differs from 1 by less than this
     number, because Newton's method then converges from the state as it is."""
     decaying_state_scaling_factor: float = 0.7
-    """Factor by which a slowly decaying motion is scaled; a growing motion with c < 0 is scaled by the
-    inverse. The factor is close enough to 1 not to miss a cycle."""
+    """Factor by which a slowly decaying motion is scaled; a growing motion whose growth increases with the
+    amplitude (c < 0 in g = g0 - c a^2) is scaled by the inverse. The factor is close enough to 1 not to miss
+    a cycle."""
     max_state_scaling_factor: float = 4.0
     """Largest factor by which a state is scaled in one jump; the smallest factor is the inverse."""
     min_returns_for_slow_limit: int = 10
-    """Smallest number of returns from which the coefficients of |z|^2 and |z|^4 in the growth of a slow
-    motion are determined."""
+    """Smallest number of returns from which c and d of the amplitude equation g = g0 - c |z|^2 - d |z|^4 of a
+    slow motion are determined."""
     linear_decay_tolerance: float = 0.05
     """A decaying motion ends at the straight rod if its decay rate and period differ by less than this
     fraction from the decay rate and the period of the leading mode."""
@@ -49,12 +50,14 @@ AMPLITUDE_EQUATION_SETTINGS = AmplitudeEquationSettings()
 
 
 class AmplitudeEquation:
-    """Amplitude equation g = g0 - c |z|^2 of one rod, with c measured from returns of its motion.
+    """Amplitude equation g = g0 - c |z|^2 of one rod, with c measured from returns of its motion. |z|: norm
+    of the state z at a return of the tip to theta = 0.
 
-    g: growth of ln |z| per return. period: period of the leading mode, in tau2. linear_growth_rate: exact
-    linear growth rate of the rod, in 1/tau2. growth_excess: linear growth rate of the rod minus the linear
-    growth rate of the integrated system, in 1/tau2. growth_error: growth per return that integration errors
-    may add. Arguments of the methods: times of returns, (k,), and states z at the returns, (k, unknowns).
+    g: growth of ln |z| per return. g0: linear growth per return. period: period of the leading mode, in tau2.
+    linear_growth_rate: exact linear growth rate of the rod, in 1/tau2. growth_excess: linear growth rate of
+    the rod minus the linear growth rate of the integrated system, in 1/tau2. growth_error: growth per return
+    that integration errors may add. Arguments of the methods: times of returns, (k,), and states z at the
+    returns, (k, unknowns).
     """
 
     def __init__(
@@ -65,13 +68,14 @@ class AmplitudeEquation:
         self.growth_excess = growth_excess
         self.growth_error = growth_error
         self.cubic_coefficient = nan
-        """Coefficient c; NaN until a contribution c |z|^2 to the growth exceeds the noise."""
+        """Coefficient c of the amplitude equation g = g0 - c |z|^2; NaN until c |z|^2 exceeds the noise in a
+        measured growth."""
 
     def measured_and_linear_growth(self, times: Array, states: Array) -> tuple[float, float]:
-        """Returns (growth, linear). growth: increase of ln |z| over the last return, corrected from the
-        integrated system to the rod. linear: increase by the linear growth rate over the same time.
+        """Returns (growth, linear). growth: increase of ln |z|, z: state, over the last return, corrected
+        from the integrated system to the rod. linear: increase by the linear growth rate over the same time.
 
-        times: (k,); states: (k, unknowns).
+        times: times of the returns, (k,). states: states at the returns, (k, unknowns).
         """
         sizes = np.linalg.norm(states[-2:], axis=1)
         duration = float(times[-1] - times[-2])
@@ -80,19 +84,20 @@ class AmplitudeEquation:
         return growth + self.growth_excess * duration, self.linear_growth_rate * duration
 
     def is_slow_mode(self, times: Array, states: Array) -> bool:
-        """Whether a motion has the period of the leading mode, and both its growth of ln |z| over the last
-        return and the growth predicted by the linear rate are at most `max_slow_growth_per_return` in
-        modulus. times: (k,); states: (k, unknowns)."""
+        """Whether a motion has the period of the leading mode, and both its growth of ln |z|, z: state, over
+        the last return and the growth predicted by the linear rate are at most `max_slow_growth_per_return`
+        in modulus. times: times of the returns, (k,). states: states at the returns, (k, unknowns)."""
         return max(
             map(abs, self.measured_and_linear_growth(times, states))
         ) <= AMPLITUDE_EQUATION_SETTINGS.max_slow_growth_per_return and self._has_period_of_mode(times)
 
     def decays_at_linear_rate(self, times: Array, states: Array) -> bool:
         """Whether a motion decays to the straight rod: the linear growth is negative, the last return took a
-        period of the leading mode, and one of two conditions holds. First: no c is measured, the states
-        shrink at every return, and the last growth equals the linear growth within `linear_decay_tolerance`.
-        Second: c |z|^2 is within this tolerance by the measured c, and the last growth is not larger than the
-        linear growth, within tolerance and noise. times: (k,); states: (k, unknowns)."""
+        period of the leading mode, and one of two conditions holds. First: c of the equation g = g0 - c |z|^2
+        is not measured yet, the states shrink at every return, and the last growth equals the linear growth
+        within `linear_decay_tolerance`. Second: |c| |z|^2 is below this tolerance with the measured c, and
+        the last growth is not larger than the linear growth, within tolerance and noise. times: times of the
+        returns, (k,). states: states z at the returns, (k, unknowns)."""
         growth, linear_growth = self.measured_and_linear_growth(times, states)
         sizes = np.linalg.norm(states, axis=1)
         tolerance = AMPLITUDE_EQUATION_SETTINGS.linear_decay_tolerance * abs(linear_growth)
@@ -112,8 +117,9 @@ class AmplitudeEquation:
 
     def decays_no_slower_than_mode(self, times: Array, states: Array) -> bool:
         """Whether a motion decays at least (1 - `max_slow_growth_per_return`) times as fast as the leading
-        mode, so that no cycle is near. The decay of a slow mode with c > 0 may be smaller by `growth_error`.
-        times: (k,); states: (k, unknowns)."""
+        mode, so that no cycle is near. Where c > 0 in the amplitude equation g = g0 - c |z|^2, the decay of a
+        slow motion may be smaller by `growth_error`. times: times of the returns, (k,). states: states z at
+        the returns, (k, unknowns)."""
         growth, linear_growth = self.measured_and_linear_growth(times, states)
         is_known = self.cubic_coefficient > 0 and self.is_slow_mode(times, states)
         return linear_growth < 0 and growth < linear_growth * (
@@ -122,10 +128,11 @@ class AmplitudeEquation:
 
     def scaling_factor_to_cycle(self, times: Array, states: Array) -> float | None:
         """Factor by which the state is to be scaled: to the predicted amplitude of the cycle, or by a fixed
-        factor if no amplitude is predicted. Measures c if its contribution exceeds the noise.
+        factor if no amplitude is predicted. Also measures c of the amplitude equation, if its contribution c
+        |z|^2 to the growth exceeds the noise.
 
         None if the motion is not slow, if the factor is close to 1, or if the growth is within the noise.
-        times: (k,); states: (k, unknowns).
+        times: times of the returns, (k,). states: states at the returns, (k, unknowns).
         """
         growth, linear_growth = self.measured_and_linear_growth(times, states)
         if not self.is_slow_mode(times, states):
@@ -162,8 +169,9 @@ class AmplitudeEquation:
 
     def scaling_factor_to_slow_limit(self, returns: Sequence[tuple[float, Array]]) -> float | None:
         """Factor from the last state to the stable cycle that a slow motion approaches, by the amplitude
-        equation g = g0 - c |z|^2 - d |z|^4 with both coefficients from all returns; None if the motion is
-        not slow or has no such limit. Near a fold of a branch the motion takes thousands of returns.
+        equation g = g0 - c |z|^2 - d |z|^4 (g: growth of ln |z| per return, z: bending moments) with c and d
+        from all `returns`; None if the motion is not slow or has no such limit. Near a fold of a branch the
+        motion takes thousands of returns.
 
         returns: time and bending moments, (nodes,), of each of the last returns.
         """
@@ -191,8 +199,8 @@ class AmplitudeEquation:
         return next((factor for factor in factors if 1 / most < factor < most), None)
 
     def _has_period_of_mode(self, times: Array) -> bool:
-        """Whether the last return took as long as a period of the leading mode, within
-        `linear_decay_tolerance`. times: (k,)."""
+        """Whether the last return took as long as a period of the leading mode, within the fraction
+        `linear_decay_tolerance`. times: times of the returns, (k,)."""
         return bool(
             abs((times[-1] - times[-2]) / self.period - 1)
             < AMPLITUDE_EQUATION_SETTINGS.linear_decay_tolerance

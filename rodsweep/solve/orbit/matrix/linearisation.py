@@ -70,8 +70,8 @@ class Linearisation:
 
     @cached_property
     def multipliers_over_solved_time_interval(self) -> Complex:
-        """Multipliers over the solved part of the period, (multipliers,). Another matrix in the same
-        workspace does not change them."""
+        """Multipliers over the solved part of the period (half a period for a symmetric orbit, else the whole
+        period), (multipliers,). Another matrix in the same workspace does not change them."""
         return multipliers_over_solved_time_interval(self._memory.propagator, self.orbit)
 
     def multipliers(self) -> Complex:
@@ -81,7 +81,8 @@ class Linearisation:
 
 
 def parameter_derivatives(form: StressForm, name: str) -> ParameterDerivatives:
-    """Derivatives of the rod and of its mass, (n,), with respect to the coordinate of parameter `name`."""
+    """Derivatives of the rod and of its mass, (n,), with respect to the coordinate of the parameter `name`,
+    for example 1/k1 (`Rod.coordinate`)."""
     change = form.nodal_rod_parameter_derivative(name)
     return ParameterDerivatives(change, form.mass_diagonal_of(change))
 
@@ -93,8 +94,9 @@ def eliminate_and_solve_at_orbit(
     """Eliminates Newton's matrix at the orbit with the given `values`, (N,), and writes it into `factors`.
 
     Returns (steps, period_derivative). steps: Newton's step and, if count = 3, the derivative of the orbit
-    values along the parameter of `derivatives`, (count - 1, N). period_derivative: reduced derivative of the
-    stage residuals with respect to the period, (K, s, n). count: 2 or 3. p: equations of the orbit.
+    values along the parameter of `derivatives`, (count - 1, N). period_derivative: derivative of the stage
+    residuals with respect to the period, reduced by the elimination, (K, s, n), for K time intervals with s
+    stages of n unknowns. count: 2 or 3. p: equations of the orbit.
     """
     K = len(factors.eliminated_blocks)
     s = len(p.stage_differentiation_matrix)
@@ -130,7 +132,8 @@ def eliminate_and_solve_at_orbit(
 
 @compiled_with_reordered_sums
 def closing_residual(points: Array, p: OrbitEquations) -> Array:
-    """Residual S x(0) - x(end) of the closing condition, (n,), S: symmetry. points: states, (1 + K s, n)."""
+    """Residual S x(0) - x(end) of the closing condition, (n,), S: symmetry. points: states at the start and
+    at the s stages of the K time intervals, (1 + K s, n)."""
     jump = -points[-1]
     for i in range(len(jump)):
         for j in range(len(jump)):
@@ -143,9 +146,9 @@ def orbit_increments(
     right_sides: Array, period_derivative: Array, columns: Array, p: OrbitEquations, factors: NewtonFactors
 ) -> Array:
     """Increments of the orbit values, (k, N), for k right-hand sides, by the eliminated matrix `factors`.
-    right_sides: right-hand sides of closing and phase conditions, (k, n + 1). columns: reduced right-hand
-    sides of the stages, (K, s, k, n). period_derivative: reduced period derivative of the stage residuals,
-    (K, s, n)."""
+    right_sides: right-hand sides of closing and phase conditions, (k, n + 1). columns: right-hand sides of
+    the s stages of each of the K time intervals, reduced by the elimination, (K, s, k, n). period_derivative:
+    derivative of the stage residuals with respect to the period, also reduced, (K, s, n)."""
     K, s, count, n = columns.shape
     increments = np.zeros((count, n + 1))
     for m in range(count):
@@ -180,11 +183,12 @@ def orbit_increments(
 def reduced_residuals(
     points: Array, duration: float, rod: OrbitEquations, p: OrbitEquations, factors: NewtonFactors
 ) -> tuple[Array, Array]:
-    """Residuals of `points`, (1 + K s, n), with the equations `rod`, reduced by the eliminated matrix
-    `factors` of a nearby orbit with the equations `p`. duration: total length of the intervals, in tau2.
+    """Residuals of the states `points`, (1 + K s, n), with the equations `rod`, reduced by the eliminated
+    matrix `factors` of a nearby orbit with the equations `p`. duration: total length of the K time intervals,
+    in tau2. s: number of stages.
 
-    Returns (columns, ends): reduced residuals, (K, s, 1, n), and increment of the state at the end of the
-    last interval for a fixed start, (1, n).
+    Returns (columns, ends): reduced residuals of the stages, (K, s, 1, n), and increment of the state at the
+    end of the last time interval for a fixed start, (1, n).
     """
     K = len(factors.eliminated_blocks)
     s = len(p.stage_differentiation_matrix)
@@ -210,8 +214,9 @@ def reduced_stage_residual_variations(
     """The right-hand sides of `write_right_sides_of_variations` with the equations `rod`, reduced by the
     eliminated matrix `factors` of a nearby orbit with the equations `p`.
 
-    Returns (columns, ends): reduced right-hand sides for m `variations`, (K, s, m, n), and increments of
-    the state at the end of the last interval for a fixed start, (m, n).
+    Returns (columns, ends): for m `variations` the reduced right-hand sides of the s stages of each of the K
+    time intervals, (K, s, m, n), and the increments of the state at the end of the last time interval for a
+    fixed start, (m, n).
     """
     K = len(factors.eliminated_blocks)
     s = len(p.stage_differentiation_matrix)

@@ -1,10 +1,10 @@
 """Shooting intervals of a strongly unstable orbit, for multiple shooting; each consists of several time
 intervals.
 
-The map P over all time intervals multiplies rounding errors by the growth of perturbations. This growth is
-1e15 for cycles with many unstable modes, whose Newton steps would have no correct digit. With the state at
-the start of every shooting interval as an unknown (Ascher, Mattheij & Russell 1995, ch. 4), errors grow over
-one shooting interval only.
+The linearised map P from the start to the end of all time intervals multiplies rounding errors by the growth
+of perturbations. This growth is 1e15 for cycles with many unstable modes, whose Newton steps would have no
+correct digit. With the state at the start of every shooting interval as an unknown (Ascher, Mattheij &
+Russell 1995, ch. 4), errors grow over one shooting interval only.
 """
 
 from dataclasses import dataclass
@@ -40,8 +40,8 @@ SHOOTING_INTERVAL_SETTINGS = ShootingIntervalSettings()
 @dataclass(frozen=True, eq=False)
 class ShootingIntervals:
     """The m shooting intervals of an orbit. first_time_interval_indices: index of the first time interval of
-    each shooting interval, and the number of time intervals, m + 1 numbers. flow_maps: derivative of the end
-    of each shooting interval with respect to its start, (m, n, n)."""
+    each shooting interval, and the number of time intervals, m + 1 numbers. flow_maps: derivative of the
+    state at the end of each shooting interval with respect to the state at its start, (m, n, n)."""
 
     first_time_interval_indices: tuple[int, ...]
     flow_maps: Array
@@ -49,12 +49,13 @@ class ShootingIntervals:
     def end_increments_for_fixed_starts(
         self, factors: NewtonFactors, columns: Array, end_increments: Array, p: OrbitEquations
     ) -> Array:
-        """Increments of the states at the ends of all shooting intervals for fixed starts, (m, k, n), for k
+        """Increments of the states at the ends of the m shooting intervals for fixed starts, (m, k, n), for k
         right-hand sides.
 
-        columns: reduced right-hand sides, (K, s, k, n). end_increments: increments of the state at the
-        end of the last time interval for a fixed start of the first time interval, (k, n): the result for a
-        single shooting interval. factors: eliminated matrix. p: equations of the orbit.
+        columns: reduced right-hand sides of the s stages of each of the K time intervals, (K, s, k, n).
+        end_increments: increments of the state at the end of the last time interval for a fixed start of the
+        first time interval, (k, n): the result for a single shooting interval. factors: eliminated matrix. p:
+        equations of the orbit.
         """
         ends = np.zeros((len(self.flow_maps), *end_increments.shape))
         if len(ends) == 1:
@@ -68,9 +69,9 @@ class ShootingIntervals:
     def stage_increments(
         self, factors: NewtonFactors, starts: Array, columns: Array, p: OrbitEquations
     ) -> Array:
-        """Increments of all stages, (K, s, 1, n). starts: increments of the states at the starts of the
-        shooting intervals, (m, n). columns: reduced right-hand sides, (K, s, 1, n). factors: eliminated
-        matrix. p: equations of the orbit."""
+        """Increments of the s stages of each of the K time intervals, (K, s, 1, n). starts: increments of the
+        states at the starts of the m shooting intervals, (m, n). columns: reduced right-hand sides of the
+        stages, (K, s, 1, n). factors: eliminated matrix. p: equations of the orbit."""
         out = np.empty_like(columns)
         for start, (first, last) in zip(starts, pairwise(self.first_time_interval_indices), strict=True):
             part = factors._replace(eliminated_blocks=factors.eliminated_blocks[first:last])
@@ -78,9 +79,9 @@ class ShootingIntervals:
         return out
 
     def multipliers(self, orbit: Orbit) -> Complex:
-        """Nonzero multipliers of the map S^-1 P over the solved part of the period, (multipliers,); P:
-        product of the maps of all shooting intervals, S: symmetry. Raises LinAlgError if the map is not
-        finite.
+        """Nonzero eigenvalues of S^-1 P, the multipliers over the solved part of the period (half a period
+        for a symmetric orbit, else the whole period), (multipliers,). P: product of the maps of all shooting
+        intervals. S: symmetry. Raises LinAlgError if the map is not finite.
 
         P itself is not formed, because multipliers far below its norm would lose all digits. Orthogonal
         iteration gives a triangular matrix whose rows are ordered by their growth.
@@ -111,10 +112,10 @@ class ShootingIntervals:
 
 
 def shooting_intervals_of(factors: NewtonFactors, mass: Array) -> ShootingIntervals:
-    """The shooting intervals of an orbit, from its eliminated matrix: a single shooting interval unless the
-    norm of P exceeds `SHOOTING_INTERVAL_SETTINGS.max_flow_map_norm`. Otherwise a time interval is joined to
-    the current shooting interval if the norm of the joined map is at most this number. mass: diagonal of M,
-    (n,)."""
+    """The shooting intervals of an orbit, from its eliminated matrix. There is a single shooting interval
+    unless the norm of P, the linearised map over all time intervals, exceeds
+    `SHOOTING_INTERVAL_SETTINGS.max_flow_map_norm`. Otherwise a time interval is joined to the current
+    shooting interval if the norm of the joined map is at most this number. mass: diagonal of M, (n,)."""
     blocks = factors.eliminated_blocks
     if (
         not np.linalg.norm(factors.propagator) > SHOOTING_INTERVAL_SETTINGS.max_flow_map_norm

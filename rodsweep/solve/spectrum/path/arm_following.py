@@ -41,30 +41,33 @@ from .eigenvalue_prediction import FollowedEigenvalues, find_conjugates, predict
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmFollowingSettings:
-    """Settings for arms along a path: number of followed modes, families of interpolated arms, hulls."""
+    """Settings for following the eigenvalues of arms along a path: number of modes, families of arms with
+    interpolated propagators (`ArmFamily`), and hulls of the spectra (`EigenvalueHull`)."""
 
     further_mode_counts: tuple[int, ...] = (3, 9)
     """Numbers of modes followed in addition to the wanted modes. The second number is tried if the first
     number proves a smaller fraction of the points than `min_proved_fraction_without_more_modes`, or is too
     small to prove all growing modes complete."""
     min_proved_fraction_without_more_modes: float = 0.5
-    """More modes are followed if the modes are proved complete at less than this fraction of the points, no
-    counts follow, and more modes would prove a further point."""
+    """More modes are followed if the modes are proved complete at less than this fraction of the points, if
+    no winding numbers are computed afterwards, and if more modes would prove a further point."""
     min_unproved_points_for_more_hulls: int = 64
-    """Minimum number of points without a proof for which hulls are computed at more arms."""
+    """Minimum number of points without a proof of completeness for which the hulls of the spectra are
+    computed at `hulls_per_unproved_interval` arms."""
     hulls_per_unproved_interval: int = 49
-    """Number of hulls computed in an interval, instead of `hulls_per_interval`, if at least
-    `min_unproved_points_for_more_hulls` points have no proof."""
+    """Number of arms of an interval at which the hull of the spectrum is computed, instead of
+    `hulls_per_interval`, if at least `min_unproved_points_for_more_hulls` points have no proof."""
     family_W_over_max_abs_eigenvalue: float = 2.0
-    """The propagators of a new family are valid at least up to W = `family_W_over_max_abs_eigenvalue` *
-    (largest |w| at the first point)."""
+    """The propagators of a new family of arms are valid for |w| up to W, at least
+    `family_W_over_max_abs_eigenvalue` * (largest |w| at the first point)."""
     min_reused_W_over_max_w: float = 1.25
-    """The family of the previous interval is used again if its W is at least this number times the largest
-    |w| at the first point of the new interval."""
+    """The family of arms of the previous interval is used again if its bound W, up to which its propagators
+    are valid in |w|, is at least this number times the largest |w| at the first point of the new interval."""
     max_points_over_previous_family: int = 2
-    """Maximum number of points of a new family, divided by the number reached with the previous family."""
+    """Maximum number of points for which a new family of arms is made, divided by the number of points that
+    were followed with the previous family."""
     min_family_points: int = 4
-    """Minimum number of points for which a family of arms is made."""
+    """Minimum number of points of a path for which a family of arms (interpolated propagators) is made."""
     eigenvalue_accuracy: float = 1e-8
     """Relative accuracy of the eigenvalues of `FollowedArms`."""
     modes_beyond_growing: int = 2
@@ -73,8 +76,8 @@ class ArmFollowingSettings:
     """Eigenvalues at a path variable p are followed from the nearest solved point in this number of equal
     steps; the numbers are tried in turn."""
     hulls_per_interval: int = 13
-    """Number of hulls computed in an interval of the path, at equally spaced arms; the hulls of all other
-    arms are interpolated."""
+    """Number of equally spaced arms of an interval of the path at which the hull of the spectrum
+    (`EigenvalueHull`) is computed; the hulls of all other arms are interpolated."""
 
 
 ARM_FOLLOWING_SETTINGS = ArmFollowingSettings()
@@ -88,9 +91,9 @@ variable p, `reference_entry_sizes` of the propagators as in `ArmFamily`). Propa
 
 @compiled
 def newton_step_of_arm_eigenvalue(w: complex, level: PropagatorsWithPathSlopes) -> CorrectedEigenvalue:
-    """One Newton step for a root of D from w, for an arm with propagators `level`; a real w stays real. The
-    error estimate contains only the rounding errors of the products of propagators; it is no bound of the
-    rounding error of D, see `rounding_error_from_propagators`."""
+    """One Newton step for a root of D from w; a real w stays real. level: bound W of |w|, and propagators of
+    the arm. The error estimate contains only the rounding errors of the products of propagators; it is no
+    bound of the rounding error of D, see `rounding_error_from_propagators`."""
     value = path_value_from_propagators(w, level[0], level[1], level[2])
     return eigenvalue_newton_step(w, value, value.rounding_error)
 
@@ -102,8 +105,9 @@ def _converged_step_and_error(
     """(last Newton step, error) of an arm's eigenvalue, after Newton steps until `converged_error` is finite.
 
     first: result of the first step. crowding: upper estimate of |D''/(2 D')| at the eigenvalue. exact:
-    whether the remainder must be below the rounding error, and the error must contain rounding and
-    interpolation along the whole arm. level: propagators of the arm. The error is inf without convergence.
+    whether the quadratic remainder of the last step must be below the rounding error, and the error must
+    contain rounding and interpolation along the whole arm. level: bound W of |w|, and propagators of the arm.
+    The error is inf without convergence.
     """
     step = first
     for _ in range(EIGENVALUE_FOLLOWING_SETTINGS.max_newton_steps):
@@ -123,7 +127,8 @@ def _converged_step_and_error(
 def taylor_parabola_roots_of_arm(
     middle: complex, level: PropagatorsWithPathSlopes
 ) -> tuple[complex, complex]:
-    """The two roots of D near a real `middle`, from the quadratic Taylor polynomial of D about `middle`."""
+    """The two roots of D near a real `middle`, from the quadratic Taylor polynomial of D about `middle`.
+    level: bound W of |w|, and propagators of the arm."""
     D, D_w, S, _ = determinant_from_propagators(middle, level[0], level[1])
     h = DETERMINANT_SETTINGS.second_derivative_step_over_w * abs(middle)
     value_after = determinant_from_propagators(middle + h, level[0], level[1])
@@ -136,9 +141,10 @@ def taylor_parabola_roots_of_arm(
 def _refine_all_eigenvalues(
     track: FollowedEigenvalues, i: int, guess: Complex, modes: int, level: PropagatorsWithPathSlopes
 ) -> bool:
-    """Refines the guesses for all eigenvalues of point i and writes the eigenvalues to the track. guess:
-    (m,). The `modes` + 1 leading eigenvalues converge to rounding error. level: propagators of the arm.
-    Returns True if all eigenvalues converged, no two coincide, and every complex pair stayed complex."""
+    """Refines the guesses for all eigenvalues of point i, and writes the eigenvalues to `track`, the
+    eigenvalues along the path. guess: (m,). The `modes` + 1 leading eigenvalues converge to rounding error.
+    level: bound W of |w|, and propagators of the arm. Returns True if all eigenvalues converged, no two
+    coincide, and every complex pair stayed complex."""
     w = track.w[i]
     error = track.error[i]
     order = track.descending_order[i]
@@ -171,11 +177,12 @@ def _refine_all_eigenvalues(
 def proved_count_right_of_line(
     track: FollowedEigenvalues, i: int, modes: int, hull: EigenvalueHull, level: PropagatorsWithPathSlopes
 ) -> int:
-    """Number of leading eigenvalues of point i that are proved to be all eigenvalues to the right of a line;
-    0 without a proof.
+    """Number of leading eigenvalues of point i that are proved to be all eigenvalues to the right of a
+    vertical line; 0 without a proof.
 
     The line lies at Re w <= 0, to the left of the `modes` leading eigenvalues, so that the proof includes all
-    unstable eigenvalues. hull: region that contains the spectrum. level: propagators of the arm.
+    unstable eigenvalues. track: eigenvalues along the path. hull: region that contains the spectrum. level:
+    bound W of |w|, and propagators of the arm.
     """
     w = track.w[i]
     error = track.error[i]

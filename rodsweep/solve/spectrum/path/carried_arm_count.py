@@ -27,10 +27,10 @@ from .eigenvalue_prediction import FollowedEigenvalues
 def confirmed_mode_count_at(
     path: ParameterPath, interval: ArmInterval, p: float, mode_count: int, point_track: FollowedEigenvalues
 ) -> int:
-    """Number of eigenvalues at path variable p that are confirmed by a count to be all eigenvalues to the
-    right of a line; 0 if no count confirms this. interval: an interval that contains p. mode_count: number of
-    requested modes, which lie to the right of the line. point_track: a track with the eigenvalues at p
-    only."""
+    """Number of eigenvalues at path variable p that a winding number confirms to be all eigenvalues to the
+    right of a vertical line; 0 if no winding number confirms this. interval: an interval that contains p.
+    mode_count: number of requested modes, which lie to the right of the line. point_track: eigenvalues at p,
+    as a track with a single point."""
     w, error = leading_eigenvalues_of_track(point_track, point_track.w.shape[1])
     line = confirmed_line(path, interval, p, (w[0], error[0]), mode_count)
     return 0 if line is None else int((w[0].real > line).sum())
@@ -44,8 +44,8 @@ def confirmed_line(
     mode_count: int,
     rightmost: float = math.inf,
 ) -> float | None:
-    """Real part, at most `rightmost`, of a line for which a count at path variable p confirms that all
-    eigenvalues to its right are followed; None if no count confirms this for any line.
+    """Real part, at most `rightmost`, of a vertical line for which a count by winding number at path variable
+    p confirms that all eigenvalues to its right are followed; None if no count confirms this for any line.
 
     interval: an interval that contains p. eigenvalues_and_errors: eigenvalues at p by descending real part,
     and their errors, (m,) each. mode_count: number of requested modes, which lie to the right of the line.
@@ -104,8 +104,9 @@ class ArmCountCarrier:
 
     def _carried_points_and_lines(self, index: int, last_index: int) -> tuple[list[int], list[float]]:
         """Returns (points, lines). points: indices of the points, from `index` to at most `last_index`, from
-        each of which the count is carried to the next. lines: real parts; no unknown eigenvalue crosses
-        lines[k] between points[k] and points[k + 1]; empty if the count cannot be carried from `index`."""
+        each of which the count is carried to the next. lines: real parts; on the way from points[k] to
+        points[k + 1], only followed eigenvalues cross the vertical line at Re w = lines[k]. `lines` is empty
+        if the count cannot be carried from `index`."""
         min_stride = NO_CROSSING_SETTINGS.arm_count - 1
         points = [index]
         lines: list[float] = []
@@ -141,8 +142,8 @@ class ArmCountCarrier:
         return confirmed_line(self.path, self.interval, p, (self.w[i], self.error[i]), self.modes, line)
 
     def _is_line_free_of_unknown_eigenvalues(self, line: float, first: int, last: int) -> bool:
-        """Whether no unknown eigenvalue lies on the line at Re w = `line`, for any arm between the points
-        with the indices `first` and `last`."""
+        """Whether it is proved that only followed eigenvalues lie on the vertical line at Re w = `line`, for
+        all arms between the points with the indices `first` and `last`."""
         interval = self.interval
         points = sampled_point_indices(first, last)
         known_w = interval.track.w[points], interval.track.error[points]
@@ -151,8 +152,8 @@ class ArmCountCarrier:
         return proves_no_crossing_of_arms(line, rods, p, known_w, interval.arm_family, interval.hulls)
 
     def _store_proved_counts_between(self, points: list[int], lines: list[float]) -> None:
-        """Fills `interval.proved_counts` between successive `points`, where no followed eigenvalue is close
-        to the line."""
+        """Fills `interval.proved_counts` from points[k] to points[k + 1] by counts to the right of Re w =
+        lines[k], except where a followed eigenvalue is within its error of this line."""
         for (first, last), line in zip(pairwise(points), lines, strict=True):
             part = slice(first, last + 1)
             w = self.w[part]

@@ -32,21 +32,23 @@ from .eigenvalue_prediction import new_track
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmRangeSettings(KernelConstants):
-    """Settings for the ranges of arms of a chain."""
+    """Settings for the parameter ranges over which the propagators of a chain of arms are interpolated."""
 
     max_relative_length: float = 0.2
-    """Largest length of a range of the parameter's coordinate, divided by the coordinate at the start of the
-    range: the change after which a chain of cycles measures its errors again."""
+    """Largest length of a range, in the coordinate of the varied parameter, divided by the coordinate at the
+    start of the range. 0.2 is the change of the parameter after which a chain of cycles measures the errors
+    of its mesh again."""
     min_chain_steps: int = 8
-    """No range is chosen for fewer steps of the chain: the propagators of a range take the time of about five
-    single arms."""
+    """A range is chosen only if it contains at least this many steps of the chain: the propagators of a range
+    take the time of about five single arms."""
     hull_count: int = 5
-    """Number of arms of a range, both ends included, whose hulls are computed."""
+    """Number of arms of a range, both ends included, for which the hull of the spectrum (`EigenvalueHull`) is
+    computed."""
     max_successive_failures: int = 2
     """Number of successive arms without a proof after which a range is given up. A single failure, for
     example where a pair of eigenvalues becomes real, does not last."""
     max_cached_ranges: int = 2
-    """Maximum number of ranges whose propagators are cached; a chain needs one at a time."""
+    """Maximum number of ranges whose propagators are cached; a chain of rods uses one range at a time."""
     field_ranges: ClassVar = {
         "hull_count": (2, inf),
         "min_chain_steps": (1, inf),
@@ -59,11 +61,12 @@ ARM_RANGE_SETTINGS = ArmRangeSettings()
 
 
 class ArmRange(NamedTuple):
-    """Range of a parameter that contains the next arms of a chain. low, high: smallest and largest coordinate
-    of the parameter. max_abs_w: largest |w| of the eigenvalues that are followed. proof_line: real part <= 0
-    of a line left of the leading eigenvalue, for the proof that it leads. Both belong to the arm at which the
-    range begins. successive_failure_count: number of successive arms, up to the last arm solved, for which
-    the range gave no proof."""
+    """Range of a parameter that contains the next arms of a chain of rods, which are solved one after
+    another. low, high: smallest and largest coordinate of the parameter. max_abs_w: largest |w| of the
+    eigenvalues that are followed. proof_line: real part <= 0 of a line left of the leading eigenvalue; the
+    proof shows that no eigenvalue right of this line is missing. max_abs_w and proof_line belong to the arm
+    at which the range begins. successive_failure_count: number of successive arms, up to the last arm solved,
+    for which the range gave no proof."""
 
     low: float
     high: float
@@ -78,15 +81,16 @@ class ArmRange(NamedTuple):
 
 
 NO_RANGE = ArmRange(nan, nan, nan, nan)
-"""Range of an arm whose proof needs a count: a range would be of no use at the next arm."""
+"""In place of a range, for an arm whose leading eigenvalue can be proved to lead only by a winding number:
+interpolated propagators would prove nothing at the next arm either, so no range is tried there."""
 
 
 def next_range(
     rod: Rod, previous_rod: Rod, name: str, current: ArmRange | None, eigenvalues: Complex
 ) -> ArmRange | None:
     """The range that contains the next arm of a chain: `current` if possible; None for uniform rods, for a
-    step of length 0 or so long that fewer than `min_chain_steps` steps fit into a range, and after
-    `NO_RANGE`.
+    step of length 0 or a step so long that fewer than `min_chain_steps` steps fit into a range, and if
+    `current` is `NO_RANGE`.
 
     rod, previous_rod: the last two rods of the chain. name: the varied parameter. current: range of `rod`,
     `NO_RANGE` or None. eigenvalues: followed eigenvalues of `rod`, (n,), the leading eigenvalue first."""
@@ -107,9 +111,10 @@ def leader_in_range(
     rod: Rod, name: str, arm_range: ArmRange, guesses: Complex
 ) -> tuple[Complex, Array] | None:
     """Returns (w, errors), (m,) each: the eigenvalues of `rod` with Im w >= 0 near `guesses`, (n,), by
-    descending real part, and their errors; None if one of them is not found, or if the first is not proved to
-    lead. name: the varied parameter of the chain. arm_range: range with the propagators; None is returned
-    outside it. guesses: eigenvalues with Im w >= 0 of the previous rod, the leading eigenvalue first."""
+    descending real part, and their errors. None if a guess leads to no eigenvalue, if w[0] is not proved to
+    be the leading eigenvalue, or if the rod lies outside `arm_range`. name: the varied parameter of the
+    chain. arm_range: range with interpolated propagators. guesses: eigenvalues with Im w >= 0 of the previous
+    rod, the leading eigenvalue first."""
     p = rod.coordinate(name)
     if not (arm_range.low <= p <= arm_range.high and arm_range.is_usable and np.isfinite(guesses).all()):
         return None
@@ -139,9 +144,10 @@ def leader_in_range(
 def arm_family_and_hulls_of_range(
     values: tuple[tuple[str, float], ...], material: RodMaterial, name: str, arm_range: ArmRange
 ) -> tuple[ArmFamily, PathHulls] | None:
-    """(family of the arms of a range, hulls that contain their spectra), cached; None if the arms are not
-    smooth in the parameter, or if no elements resolve an arm. values, material: parameter values by name, and
-    material, of the arm at `arm_range.low`. name: the varied parameter."""
+    """Returns (family, hulls), cached: the interpolated propagators of the arms of a range, and regions that
+    contain the spectra of these arms. None if the arms are not smooth in the parameter, or if no elements
+    resolve an arm. values, material: parameter values by name, and material, of the arm at `arm_range.low`.
+    name: the varied parameter."""
     W = ARM_FOLLOWING_SETTINGS.family_W_over_max_abs_eigenvalue * arm_range.max_abs_w
     try:
         path = ParameterPath(Rod(**dict(values), material=material), name)

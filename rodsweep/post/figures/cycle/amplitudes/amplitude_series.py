@@ -25,7 +25,7 @@ class AmplitudeSeries:
 
     view: ResultView
     constant_parameters: dict[str, float]
-    """Parameters that are constant along the line, by name."""
+    """Parameters with the same value at all points of the series, by name."""
     x: Array
     amplitude_x: Array
     tip_y_max: Array
@@ -35,11 +35,11 @@ class AmplitudeSeries:
     status_names: NDArray[np.str_]
     """Status of each point, as a word."""
     hopf_points: list[LocatedThreshold]
-    """Hopf points on the line; empty unless x is F."""
+    """Hopf points of the straight rod in the range of x; empty unless x is F."""
     units: CycleUnits
     """Units of all drawn quantities."""
     first_point_number: int
-    """Number of the first point of the line in the file, from 1."""
+    """Number, in the file, of the first point of the series, counted from 1."""
 
     @property
     def drawn_quantities(self) -> tuple[Array, ...]:
