@@ -42,7 +42,7 @@ class ThresholdsKeywords(TaskKeywords, total=False):
     F_max: float
     """Largest force of the search, in k3/L^2."""
     crossings: int
-    """Maximum number of stored crossings."""
+    """Maximum number of stored thresholds."""
     certify: bool
     """Whether to confirm by winding numbers that no threshold is missing."""
 

@@ -26,8 +26,8 @@ from ..wording import count_of_total, counted
 
 @np.errstate(over="ignore")
 def print_job_check(job: Job) -> None:
-    """Prints the points, the modelled effects and the expected cost of a valid config. Numbers of extreme
-    rods may overflow; the estimates limit these numbers."""
+    """Prints the points, the modelled effects and the expected cost of a valid config. For extreme rods the
+    arithmetic may overflow, without a warning; the printed estimates remain bounded."""
     console = Console(highlight=False, markup=False)
     console.print(f"{job.config_path}: valid. {job.config.title}".rstrip())
     console.print(job.task.headline_of_check())

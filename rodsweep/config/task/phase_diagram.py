@@ -27,7 +27,7 @@ class PhaseDiagramOptions(StrictConfigSection):
     """Options of the task phase_diagram, for the rows of the diagram and for the boundary curves."""
 
     crossings: CrossingCount = 16
-    """Maximum number of stored crossings per row."""
+    """Maximum number of thresholds of the straight rod stored for each row of the diagram."""
     certify: bool = True
     """Confirm by winding numbers that no threshold is missing, and certify every spectrum."""
     curves: bool = True
@@ -89,7 +89,8 @@ class PhaseDiagramConfig(LinearConfig):
 
     @property
     def plane_parameters(self) -> tuple[str, ...]:
-        """(parameter along a row, parameter across rows): names of the parameters with several values.
+        """(line parameter, row parameter): the two parameters with several values. The line parameter varies
+        along each row of the diagram, the row parameter differs between rows.
 
         The names are in the order of NON_OPTIONAL_LINEAR_PARAMETER_NAMES and OPTIONAL_PARAMETER_NAMES.
         """

@@ -19,7 +19,7 @@ class ThresholdsOptions(StrictConfigSection):
     """Largest force of the search. If the arm is crushed at a smaller force (k1 for a uniform rod of linear
     material), the search ends just below the crushing force."""
     crossings: CrossingCount = 16
-    """Maximum number of stored crossings."""
+    """Maximum number of stored thresholds, that is, crossings."""
     certify: bool = True
     """Confirm by winding numbers that no threshold is missing, and certify every spectrum."""
 

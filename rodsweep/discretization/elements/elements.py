@@ -166,7 +166,8 @@ class Elements:
     def points_by_element(self, points: Array) -> Iterator[tuple[int, NDArray[np.integer], Array]]:
         """Yields (element, indices, coordinates) for each element that contains some of the `points`, (n,).
         indices: indices of the points in the element. coordinates: coordinates of these points, from -1 to 1
-        along the element (2 t - 1 with t of `node_spacing`)."""
+        along the element (2 t - 1, t: the coordinate of `node_spacing` in which the nodes of an element are
+        Lobatto points)."""
         element = self.element_indices(points)
         for e in np.unique(element):
             indices = np.nonzero(element == e)[0]

@@ -1,5 +1,5 @@
-"""Curves of a phase diagram, which bound the areas of the diagram of a page, and known numbers of unstable
-modes between the crossings of its rows."""
+"""Stability curves of a phase diagram, for the diagram on the page, and the known numbers of unstable modes
+between neighbouring thresholds at equal second parameter."""
 
 import json
 from typing import Any, NamedTuple

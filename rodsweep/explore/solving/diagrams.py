@@ -46,7 +46,7 @@ EMPTY_CURVE_VARIABLES: dict[str, Any] = {
     "cycle_curves": (),
     **dict.fromkeys(("between_x", "between_y", "between_count", "crushing_load"), np.zeros(0)),
 }
-"""Variables of a diagram without curves and without known crossings of its rows."""
+"""Variables of a diagram without curves and without known numbers of unstable modes between thresholds."""
 UNKNOWN_UNSTABLE_COUNT = -1
 """Value of `unstable_count` at a point whose number of unstable modes is unknown."""
 CRUSHED_UNSTABLE_COUNT = -2

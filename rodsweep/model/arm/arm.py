@@ -78,7 +78,8 @@ class SlenderArm:
         refuse_crushed(self)
 
     def parameter(self, name: str) -> float:
-        """Value of the rod parameter `name`; the neutral value if an arm does not determine the parameter."""
+        """Value of the rod parameter `name`; if an arm does not determine this parameter, its default, or its
+        value at coordinate 0, for example F = 0 or k1 = inf."""
         return float(getattr(self, name, PARAMETERS[name].neutral_value))
 
     def quoted_quantity(self, name: str) -> str:

@@ -21,7 +21,8 @@ class KernelConstants:
 
     __slots__ = ()
     field_ranges: ClassVar[Mapping[str, tuple[float, float]]] = {}
-    """Exclusive bounds (lower, upper) of the value of a field, by name of the field, as a proof requires."""
+    """Exclusive bounds (lower, upper) of fields, by name of the field, for fields whose bounds a proof
+    requires."""
 
     def __post_init__(self) -> None:
         """Raises ValueError for a field outside its bounds in `field_ranges`."""

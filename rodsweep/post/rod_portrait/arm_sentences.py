@@ -1,4 +1,5 @@
-"""Sentences in the portrait of an arm: its units, and whether the model applies to it."""
+"""Sentences about an arm in the portrait of a rod: the units of the arm, and whether the model applies to the
+arm."""
 
 from collections.abc import Iterator
 

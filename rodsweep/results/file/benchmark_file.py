@@ -1,4 +1,4 @@
-"""File of a benchmark: a group of columns for each study, and attributes of the machine."""
+"""File of a benchmark: a group of columns for each study, and attributes that describe the machine."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path

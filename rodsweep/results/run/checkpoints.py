@@ -89,8 +89,8 @@ class Checkpoints(ArrayStore):
     def __init__(
         self, directory: Path, fingerprint: str, state_of: Callable[[ArraysByName], ArrayConvertibleState]
     ):
-        """directory: journal directory. state_of: makes a solver state from its arrays (the result of the
-        state's method `arrays`)."""
+        """directory: journal directory. fingerprint: digest of config and points. state_of: makes a solver
+        state from its arrays (the result of the state's method `arrays`)."""
         super().__init__(directory, fingerprint, CHECKPOINT_HEAD)
         self._state_of = state_of
 
@@ -124,7 +124,7 @@ class ItemResults(ArrayStore):
     file_name_pattern = ITEM_RESULT_GLOB
 
     def __init__(self, directory: Path, fingerprint: str):
-        """directory: journal directory."""
+        """directory: journal directory. fingerprint: digest of config and points."""
         super().__init__(directory, fingerprint, RESULT_HEAD)
 
     def write(self, item: int, arrays: ArraysByName) -> None:

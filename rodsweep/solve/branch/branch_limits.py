@@ -39,7 +39,8 @@ class BranchRequest:
 
 @dataclass(frozen=True, slots=True)
 class BranchLimits:
-    """Range, number of cycles, and possible ends of branches of a rod; relative accuracy of the cycles."""
+    """Limits of the branches of a rod: parameter range, number of cycles, relative accuracy of the cycles,
+    and the Hopf points and symmetry breakings at which a branch may end."""
 
     hopfs: Sequence[HopfBranchStart]
     """Hopf points of the rod within the range."""

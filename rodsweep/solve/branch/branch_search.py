@@ -135,7 +135,7 @@ class BranchSearch:
             self.curves.append(curve)
 
     def _folds_within_range_from_beyond(self) -> list[SpecialPoint]:
-        """Folds just within the range at which branches beyond it turn back between two of their cycles."""
+        """Folds inside the range between successive cycles beyond it, on branches followed there."""
         low, high = self.limits.coordinate_range
         coordinate = PARAMETERS[self.parameter_name].coordinate
         folds = (fold for region in self.regions for fold in region.folds)

@@ -54,8 +54,8 @@ class PathEigenproblem(ABC):
         return None
 
     def relaxation_time_and_slope(self, p: float) -> tuple[float, float]:
-        """Returns (relaxation time of the rod at p, its derivative with respect to p); the time is smooth in
-        p. By default time is not rescaled."""
+        """Returns (T, dT/dp): unit of time T at p, smooth in p, by which eigenvalues are multiplied so that
+        they stay moderate along the path. Here T = 1, which leaves the eigenvalues unchanged."""
         return 1.0, 0.0
 
 

@@ -131,8 +131,8 @@ class UnstableModeCounter:
     def _count_before(self, a: float, b: float, unstable_count: int, frequency: float) -> int:
         """Number of unstable modes just before b: `unstable_count`, the number just after a, compared with a
         count between a and b if `certify`; a contradiction is added to `doubts`. If a gap lies between a and
-        b, the result is the number counted behind the gap, or -1 if undecided. frequency: frequency, in
-        1/tau2, of the pair that crosses the axis at b or was the last to cross before; 0 if there is no
+        b, the result is the number counted between the gap and b, or -1 if undecided. frequency: frequency,
+        in 1/tau2, of the pair that crosses the axis at b or was the last to cross before; 0 if there is no
         crossing."""
         gaps_between = [gap for gap in self.gaps if gap[1] > a and gap[0] < b]
         if gaps_between:
@@ -161,6 +161,7 @@ class UnstableModeCounter:
 
 
 def _change_of_count(kind: ThresholdKind) -> int:
-    """Change of the number of unstable modes at a crossing of the imaginary axis by increasing parameter."""
+    """Change of the number of unstable modes, 2 or -2, when the parameter increases through a crossing of the
+    imaginary axis of this kind."""
     # Eigenvalues cross in conjugate pairs, as the determinant is real for real w; none crosses at w = 0.
     return 2 if kind == ThresholdKind.hopf else -2

@@ -70,8 +70,8 @@ class CycleStart:
 
     predictor: polynomial for the next cycle. next_mesh: mesh for the next cycle. calibration: measured errors
     of a mesh, perhaps outdated. eigenvalues: eigenvalues of the straight rod in 1/tau2 with Im >= 0, (n,),
-    the leading eigenvalue first; NaN if not known. arm_range: range of arms that contains the next rod, or
-    None.
+    the leading eigenvalue first; NaN if not known. arm_range: parameter range with interpolated propagators
+    that contains the next rod, or None.
     """
 
     predictor: CyclePredictor

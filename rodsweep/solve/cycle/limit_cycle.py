@@ -155,8 +155,8 @@ def _with_motion_data(
 
 
 def _motion_shapes(transient: TransientIntegration, trace: ShapeTrace, request: CycleRequest) -> MotionShapes:
-    """The shapes `trace` recorded along the integrated motion `transient`, at the requested numbers of times
-    and nodes."""
+    """The shapes that `trace` recorded along the integrated motion `transient`, at the requested numbers of
+    times and nodes."""
     return_times = [time for time, _ in transient.past_returns]
     return trace.motion_shapes(return_times, transient.leading_mode.period, request.frames, request.nodes)
 

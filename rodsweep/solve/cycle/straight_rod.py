@@ -53,8 +53,9 @@ class StraightRodStability:
     NaN if w is not known.
 
     message: reason why w is not known. followed_eigenvalues: eigenvalues that were followed from a similar
-    rod, (n,), the leading eigenvalue first; empty if w was found by a search. arm_range: range of arms of
-    the chain, None without a range, or `NO_RANGE` if the proof that w leads needs a count.
+    rod, (n,), the leading eigenvalue first; empty if w was found by a search. arm_range: parameter range over
+    which the propagators of a chain of arms are interpolated, None without a range, or `NO_RANGE` if only a
+    winding number proves that w leads.
     """
 
     w: complex
@@ -133,7 +134,8 @@ def straight_rod_stability_in_chain(
     rod: Rod, near_eigenvalues: Complex, parameter_name: str | None, arm_range: ArmRange | None
 ) -> StraightRodStability:
     """`straight_rod_stability` of a rod of a chain. near_eigenvalues: eigenvalues of the previous rod, (n,).
-    parameter_name: the varied parameter. arm_range: range of arms that contains the rod, or None."""
+    parameter_name: the varied parameter. arm_range: parameter range with interpolated propagators that
+    contains the rod, or None."""
     if parameter_name is None or arm_range is None:
         return straight_rod_stability(rod, near_eigenvalues)
     leading_w = follow_leader_in_range(

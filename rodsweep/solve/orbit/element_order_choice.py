@@ -19,7 +19,7 @@ class RodElementOrderRatioSettings(KernelConstants):
     """Settings for the orders of the elements of a mesh relative to the largest order."""
 
     min_element_order: int = 4
-    """Smallest element order that is chosen from coefficients."""
+    """Smallest order of an element that is chosen from the Legendre coefficients of an orbit."""
     min_element_order_ratio: float = 0.2
     """Smallest order of an element, divided by the largest order of the mesh. Elements of short and stiff
     segments reach 0.25."""

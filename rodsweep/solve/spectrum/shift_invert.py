@@ -28,8 +28,9 @@ class KrylovSettings:
     shift_over_growth_rate: float = 1.05
     """Shift divided by the growth rate of the most amplified wave. This growth rate is above most spectra."""
     shift_over_smallest_growth_rate: float = 0.5
-    """Shift divided by the smallest growth rate found, if smaller ones are missing: below 1, because the next
-    eigenvalue lies to the left; not 0, because growth rates may be far apart."""
+    """If eigenvalues farther left are missing, the new shift is this number times the smallest growth rate
+    found. Below 1, so that among growing modes the shift moves to the left; not 0, because growth rates may
+    be far apart."""
     shift_reduction_factor: float = 0.01
     """The shift is multiplied by this number if the previous shift gave no further eigenvalue."""
     max_dense_unknowns: int = 300

@@ -104,8 +104,8 @@ def rows_with_branches_across_limits(
 def rows_changed_when_solved_again(
     view: ResultView, solved_again: Mapping[int, NamedArrays]
 ) -> dict[int, NamedArrays]:
-    """The rows of `solved_again` that have more special points or another status than in the file. view: the
-    file with all rows of the diagram. solved_again: results of rows, by index of the row."""
+    """The rows of `solved_again` whose number of special points, or whose status, differs from the file.
+    view: the file with all rows of the diagram. solved_again: results of rows, by index of the row."""
     counts = view.flattened_by_point("cycle_special_count")
     statuses = view.variables["status"].ravel()
     return {

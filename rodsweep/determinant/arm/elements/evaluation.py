@@ -213,8 +213,8 @@ def apply_real_propagator(C: Array, x: Array, out: Array) -> None:
 
 @compiled_with_reordered_sums
 def propagate_real_tangent(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
-    """As `propagate_tangent`, out = C t + change x, for real propagators: C, change: (PROPAGATOR_LENGTH,). t,
-    x, out: (MINOR_COUNT,)."""
+    """As `propagate_tangent`, out = C t + change x, for real arrays. C, change: (PROPAGATOR_LENGTH,). t, x,
+    out: (MINOR_COUNT,)."""
     for i in range(MINOR_COUNT):
         out[i] = 0.0
     for j in range(MINOR_COUNT):

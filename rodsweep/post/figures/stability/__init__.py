@@ -1,1 +1,2 @@
-"""Figures of stability: thresholds, classes of rods in planes and rows, boundary curves, normal forms."""
+"""Figures of stability: thresholds, stability of rods in planes of two parameters, boundary curves, normal
+forms."""

@@ -108,8 +108,8 @@ def _distances_along_row(
     problem: SpecialCurveProblem, crossing: SolvedCurvePoint, special_points: Mapping[int, RowSpecialPoint]
 ) -> dict[int, float]:
     """Distance along the row, as a fraction of the parameter range of the row, from the point `crossing` of a
-    curve to each of `special_points` on the same row that agrees with it. Keys: index of the special
-    point."""
+    curve to each of `special_points` on the same row that agrees with it in position and period. Keys: index
+    of the special point."""
     coordinate = problem.axis_along_row.scaled_coordinate(crossing.branch_parameter_value)
     distances = {
         i: abs(coordinate - problem.axis_along_row.scaled_coordinate(special_point.parameter_value))

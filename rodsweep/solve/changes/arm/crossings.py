@@ -37,7 +37,7 @@ class ArmCrossingSettings:
     """Two crossings that may be equal by `max_same_crossing_distance_in_errors` are equal if the relative
     difference of their frequencies is at most this number."""
     min_interval_fraction: float = 1e-6
-    """Between equal counts, intervals shorter than this fraction of the path are stored as gaps."""
+    """An interval whose ends have equal unstable counts becomes a gap below this fraction of the path."""
     min_relative_interval_length: float = 1e-12
     """The search fails at an interval without located crossings whose length, divided by the larger modulus
     of its ends, is at most this number: some thousand rounding errors."""
@@ -46,7 +46,7 @@ class ArmCrossingSettings:
     max_newton_steps: int = 20
     """Maximum number of Newton steps for one crossing."""
     converged_step_in_errors: float = 4.0
-    """Newton's method for a crossing stops when the step of p is at most this multiple of its error."""
+    """Newton's method for a crossing stops when the step of p is at most this multiple of the error of p."""
     max_relative_frequency_error: float = 1e-2
     """A crossing with a larger relative error of its frequency is not located: from a poor guess, Newton's
     method for w may stop far from all roots of D, where errors are at least 0.16 (83 such stops)."""
@@ -59,7 +59,7 @@ ARM_CROSSING_SETTINGS = ArmCrossingSettings()
 
 class CrossingSearch:
     """Search for crossings along a path. crossings_by_p: crossings by path variable p. gaps: intervals of p
-    that may contain two crossings."""
+    that may contain two crossings, too short to be divided."""
 
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem
@@ -97,7 +97,7 @@ class CrossingSearch:
         return [c for c in ordered if self._may_lie_within(c, first, last)], intervals.end
 
     def _may_lie_within(self, crossing: Threshold, low: float, high: float) -> bool:
-        """Whether path variables from `low` to `high` lie within the error of `crossing`."""
+        """Whether `crossing`, within its error, may lie between the path variables `low` and `high`."""
         ends = crossing.value - crossing.error, crossing.value + crossing.error
         first, last = sorted(map(self.problem.path.coordinate, ends))
         return first <= high and last >= low

@@ -57,7 +57,8 @@ class BoundaryCurve:
     """Extrema of the first parameter, then of the second, each in their order along the curve."""
     end_reasons: tuple[BoundaryEndReason, BoundaryEndReason]
     scaled_points: Array
-    """Scaled coordinates x, y and h = log|eigenvalue| of each point, (points, 3)."""
+    """Points of the curve, (points, 3), as x, y, h: both parameters, scaled to 0 and 1 at the edges of the
+    plane, and h = log |eigenvalue|."""
 
     @property
     def consists_of_hopf_points(self) -> bool:
@@ -67,9 +68,9 @@ class BoundaryCurve:
 def trace_boundary(
     double_eigenvalue_sign: float, plane: ParameterPlane, start: tuple[float, float], eigenvalue: float
 ) -> BoundaryCurve | None:
-    """The boundary curve through `start` (scaled coordinates) and |w| = |eigenvalue|; None if no point of a
-    curve is found there. double_eigenvalue_sign: 0 for a curve of Hopf points, else the sign of the double
-    eigenvalue.
+    """The boundary curve through the point `start`, both parameters scaled to 0 and 1 at the edges of the
+    plane, with |w| = |eigenvalue|; None if no point of a curve is found there. double_eigenvalue_sign: 0 for
+    a curve of Hopf points, else the sign of the double eigenvalue.
 
     The curve is followed in both directions until it leaves the plane, closes, reaches a crushed rod, or
     cannot be followed further.

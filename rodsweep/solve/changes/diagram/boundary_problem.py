@@ -74,7 +74,7 @@ class BoundaryEndReason(IntEnum):
 
 class BoundaryPoint(NamedTuple):
     """A point v = (x, y, h) of a curve, (3,), and the unit tangent in the direction of the curve, (3,). x, y:
-    scaled parameters. h: log |eigenvalue|."""
+    both parameters, scaled to 0 and 1 at the edges of the plane. h: log |eigenvalue|."""
 
     scaled_point: Array
     tangent: Array
