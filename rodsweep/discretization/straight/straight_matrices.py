@@ -30,10 +30,10 @@ the rod's axis."""
 
 class _SparsityPattern(NamedTuple):
     """Sparsity pattern of A for some components on a mesh; it contains the full diagonal. node_rows,
-    node_columns: node indices of the nonzero entries of W D without the column of the tip, (m,).
-    pattern_indices: index in the pattern of each value that `StraightMatrices.A` concatenates. indices,
-    indptr: rows and column starts in scipy's order. diagonal_indices: indices in the pattern of the diagonal
-    entries, (n,)."""
+    node_columns: node indices of the nonzero entries of the weak derivative matrix W D (weights times
+    differentiation matrix), without the column of the tip, (m,). pattern_indices: index in the pattern of
+    each value that `StraightMatrices.A` concatenates. indices, indptr: rows and column starts in scipy's
+    order. diagonal_indices: indices in the pattern of the diagonal entries, (n,)."""
 
     node_rows: NDArray[np.int_]
     node_columns: NDArray[np.int_]

@@ -76,8 +76,9 @@ def diagram_answer(state: PageState) -> dict[str, Any]:
 
 
 def diagram_answer_with_cycle_curves(state: PageState) -> dict[str, Any]:
-    """The result of `diagram_answer` with curves of folds and torus points of cycles, which are searched on
-    ROW_COUNT_OF_SLOW_DIAGRAMS rows. A diagram that this process has already solved is not solved again.
+    """The result of `diagram_answer` with curves of folds and torus points of cycles, which are searched at
+    ROW_COUNT_OF_SLOW_DIAGRAMS values of the second parameter. A diagram that this process has already solved
+    is not solved again.
 
     Raises InputError for arms, and for rods that are not uniform or not of linear material.
     """
@@ -220,8 +221,8 @@ def diagram_from_rod_thresholds(
     data: DatasetOrArray, row_values: np.ndarray, name: str, largest: float
 ) -> dict[str, Any]:
     """Diagram, with the variables of `diagram_answer`, from a result of the task `thresholds` over a second
-    parameter. Beyond the end of a row's search, and on rows without a search, the count is
-    UNKNOWN_UNSTABLE_COUNT.
+    parameter. Beyond the largest load that was searched at a value of the second parameter, the number of
+    unstable modes is UNKNOWN_UNSTABLE_COUNT.
 
     row_values: second parameter, (rows,). name: name of the variable with the loads at the thresholds.
     largest: largest load of the diagram.

@@ -54,10 +54,11 @@ def stable_state_lines(rows: DiagramRows) -> list[str]:
 
 
 def _has_coexistence_only_between_points(view: ResultView, line_parameter: str) -> np.ndarray:
-    """Mask of the rows, (...,), on which straight rod and cycle are both stable somewhere between two
-    neighbouring grid points, but not at these points: only the straight rod is stable at one point, only the
-    cycle at the other, and between them one state becomes stable before the other state ends. Only intervals
-    with one change of the straight rod and one change of cycles are considered."""
+    """Mask of the rows of the diagram (one value of the second parameter each), (...,), on which straight rod
+    and cycle are both stable somewhere between two neighbouring grid points, but not at these points: only
+    the straight rod is stable at one point, only the cycle at the other, and between them one state becomes
+    stable before the other state ends. Only intervals with one change of the straight rod and one change of
+    cycles are considered."""
     variables = view.variables
     x = variables[line_parameter]
     straight, cycle = (stored_number_of_word(state, STABLE_STATES) for state in ("straight", "cycle"))

@@ -25,8 +25,8 @@ PROGRAM_NAME = "rodsweep"
 FORMAT_NUMBER = 11
 """Value of the attribute `format` of result files. The format grows when a variable is added or changes in
 meaning; files whose format number differs are refused. Format 5 was the first with sealed content; 6
-introduced frequencies in Hz, counts from 1, the Hopf points of the lines of limit cycles, and grids over an
-arm's quantities; in 9 `tip_theta_max` is the largest |theta|, not the largest theta."""
+introduced frequencies in Hz, counts from 1, the Hopf points between the points of a file of limit cycles, and
+grids over an arm's quantities; in 9 `tip_theta_max` is the largest |theta|, not the largest theta."""
 CONFIG_SUFFIXES = (".yaml", ".yml")
 """Suffixes of the names of config files."""
 MAX_QUOTED_MESSAGE_LENGTH = 150

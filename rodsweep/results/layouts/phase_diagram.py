@@ -144,7 +144,8 @@ def cycle_row_variables(line_parameter: str) -> tuple[Variable, ...]:
 
 def cycle_curve_variables(line_parameter: str, row_parameter: str) -> dict[str, Variable]:
     """Variables, by name, of the curves of folds of cycles and torus points, for `phase_diagram.cycles`.
-    line_parameter: parameter along each row. row_parameter: parameter that differs between rows."""
+    line_parameter, row_parameter: names of the parameters that vary along the rows of the diagram and from
+    row to row."""
     units = {name: PARAMETERS[name].unit for name in (line_parameter, row_parameter)}
     unit = units[line_parameter]
     kind_meaning = "kind of the special points on the curve, fold or torus"
@@ -174,8 +175,8 @@ def cycle_curve_variables(line_parameter: str, row_parameter: str) -> dict[str, 
 
 def boundary_curve_variables(line_parameter: str, row_parameter: str) -> dict[str, Variable]:
     """Variables, by name, of the boundary curves of a phase diagram, their folds, their agreement with the
-    rows, and reference values of filament and partial beam. line_parameter: parameter along each row.
-    row_parameter: parameter that differs between rows."""
+    rows, and reference values of filament and partial beam. line_parameter, row_parameter: names of the
+    parameters that vary along the rows and from row to row."""
     kind_meaning = "kind of the points on the curve, double real eigenvalues or Hopf points"
     fold_parameter_meaning = "parameter that reverses its direction along the curve at the fold"
     filament_meaning = "Fc: F at which the filament (k1, k2 = inf, gamma3 = 0) flutters"

@@ -54,7 +54,8 @@ class BranchLimits:
     workspace: NewtonWorkspace
     """Memory of Newton's matrices."""
     min_coordinate_unit: float = 0.0
-    """Smallest unit of the parameter coordinate, see `ArcLengthScale`."""
+    """Lower limit of the unit in which the parameter coordinate enters the arc length, see
+    `ArcLengthScale`."""
     is_omega_always_unknown: bool = False
     """Whether the angular velocity Omega is an unknown for all cycles, see `StressForm`."""
     breakings: Sequence[SymmetryBreaking] = ()

@@ -69,10 +69,10 @@ class CyclePredictor:
     """Polynomial in one parameter that predicts orbits on the branch of the solved orbit `orbit`, by Hermite
     interpolation.
 
-    values_and_derivatives: normalised values of orbits, or their parameter derivatives, (m, N + 1), N: number
-    of orbit values; the first row is the derivative at the solved orbit. parameter_offsets: parameter
-    coordinate of each row minus the parameter coordinate of the solved orbit, (m,). derivative_orders: 0 for
-    values, 1 for a derivative, (m,).
+    values_and_derivatives: values of orbits as in `normalised_values`, or their parameter derivatives, (m, N
+    + 1), N: number of orbit values; the first row is the derivative at the solved orbit. parameter_offsets:
+    parameter coordinate of each row minus the parameter coordinate of the solved orbit, (m,).
+    derivative_orders: 0 for values, 1 for a derivative, (m,).
     """
 
     orbit: Orbit

@@ -21,9 +21,9 @@ from .status import CriticalityStatus
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Criticality:
-    """Result for one rod: all Hopf points up to the force `end`. search_result: all Hopf points, with or
-    without coefficients, by increasing force. coefficients: normal form coefficients of the first Hopf
-    points, at most as many as requested. seconds: computing time."""
+    """Result for one rod: all Hopf points from the force 0 to the force `end`, where the search ended.
+    search_result: all Hopf points, with or without coefficients, by increasing force. coefficients: normal
+    form coefficients of the first Hopf points, at most as many as requested. seconds: computing time."""
 
     status: CriticalityStatus
     """Most serious problem of the search or of a coefficient, or ok."""

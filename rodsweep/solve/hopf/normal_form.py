@@ -64,7 +64,7 @@ NORMAL_FORM_SETTINGS = NormalFormSettings()
 ITERATIONS_PER_SHIFT = 2
 """Number of inverse iterations with one shift. After two iterations the error of the mode is about the square
 of `NORMAL_FORM_SETTINGS.converged_relative_shift_distance`, below rounding error; after one iteration the
-error of the mode would exceed the stated error of c."""
+error of the mode would exceed the stated error of the Landau coefficient c."""
 
 
 HARMONIC_WAVE_NUMBER_RATIO = 2

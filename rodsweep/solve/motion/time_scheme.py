@@ -35,16 +35,16 @@ SNES_TYPE_BY_TS_TYPE: Mapping[str, str] = {
     **dict.fromkeys(("arkimex", "dirk", "bdf", "theta", "beuler", "cn"), "shell"),
 }
 """PETSc's SNES type for each TS type; "newtonls" for TS types not in this table. "shell" selects
-`stage_newton`, which requires that the unknown of a stage is the state at which f is evaluated; the TS type
-alpha, for example, has a different unknown."""
+`stage_newton`, which requires that the unknown of a stage is the state at which the right-hand side f of the
+differential equation is evaluated; the TS type alpha, for example, has a different unknown."""
 
 
 @dataclass(frozen=True, slots=True)
 class TimeScheme:
     """Time scheme: `ts_type` is PETSc's TS type, `ts_sub_type` its sub-type (for bdf: its order).
 
-    tolerance: local error per time step of each component of z, divided by the largest component of the
-    initial state. newton_tolerance_ratio: Newton's method for a stage stops at the error
+    tolerance: local error per time step of each component of the state z, divided by the largest component of
+    the initial state. newton_tolerance_ratio: Newton's method for a stage stops at the error
     newton_tolerance_ratio * tolerance. has_equal_steps: whether the step length is constant. options_prefix:
     prefix of the PETSc options that override the scheme."""
 

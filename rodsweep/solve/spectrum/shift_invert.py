@@ -89,8 +89,8 @@ class CurrentPencil(NamedTuple):
 
 class ShiftInvertSolver(ABC):
     """Krylov-Schur solver for pencils of one sparsity pattern; `solve` may be called any number of times.
-    mass: mass at the nodes without the clamp, (nodes,), for the first Krylov vector. A, B: PETSc's matrices
-    A - shift B and B of the rod in `current_pencil`. eps: SLEPc's solver."""
+    mass: lumped masses of the nodes, without the clamp, (nodes,), for the first Krylov vector. A, B: PETSc's
+    matrices A - shift B and B of the rod in `current_pencil`. eps: SLEPc's solver."""
 
     def __init__(self, pattern: Pencil | ArmPencil, mass: Array):
         self.node_count = pattern.node_count

@@ -67,8 +67,8 @@ def first_asymmetric_cycle(
     """Returns (cycle, relative accuracy): the first asymmetric cycle of the branch from the symmetry breaking
     `breaking` along the parameter `name`, and its relative accuracy, which is `accuracy`, or a smaller number
     if a fold lies close to the symmetry breaking. Raises Unsolvable. Of a cycle and its mirror image, the
-    cycle with the larger maximum of the tip's y is returned. min_coordinate_unit: smallest unit of the
-    parameter coordinate."""
+    cycle with the larger maximum of the tip's y is returned. min_coordinate_unit: lower limit of the unit in
+    which the parameter coordinate enters the arc length (`ArcLengthScale`)."""
     if breaking.special_point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
     full_orbit = extended_to_whole_period(breaking.special_point.orbit)

@@ -145,9 +145,9 @@ class CrossingSearch:
     def _intervals_between_crossings(
         self, crossings: list[Threshold], left: ArmModes, right: ArmModes, length: float
     ) -> list[tuple[float, float]] | None:
-        """The intervals of p from `left` to `right` that remain without the surroundings of `crossings`, in
-        increasing order; None if a crossing is not located, or if the counts just before and just after a
-        crossing do not confirm it. length: length of the path."""
+        """The intervals of p from `left` to `right` outside the surroundings of `crossings`, which extend by
+        `count_to_crossing_path_fraction` * `length` (length of the path) on both sides. None if a crossing is
+        not located, or if the counts at the ends of its surroundings do not confirm it."""
         settings = ARM_CROSSING_SETTINGS
         intervals: list[tuple[float, float]] = []
         start = left.p

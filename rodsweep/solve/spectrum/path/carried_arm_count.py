@@ -1,7 +1,7 @@
 """Counts of eigenvalues right of a line: at one arm of an interval, and carried along its arms.
 
 A count at one arm confirms that all eigenvalues right of a line are followed eigenvalues. This remains true
-at further arms as long as no unknown eigenvalue lies on the line
+at further arms as long as no eigenvalue but the followed ones lies on the line
 (`rodsweep.determinant.arm.count.no_crossing`). A second count, at the last arm, must confirm the result.
 """
 
@@ -65,10 +65,10 @@ def confirmed_line(
 
 
 class ArmCountCarrier:
-    """Carries counts along the arms of an interval, to fill `proved_counts` at points without a proof. modes:
-    number of requested modes. w, error: followed eigenvalues by descending real part, and their errors,
-    (points, m). lines: real part, at each point, of the rightmost line to the left of all requested
-    eigenvalues and of the imaginary axis, (points,)."""
+    """Carries counts of the eigenvalues right of a line along the arms of an interval, to fill
+    `proved_counts` at points without a proof. modes: number of requested modes. w, error: followed
+    eigenvalues by descending real part, and their errors, (points, m). lines: real part, at each point, of
+    the rightmost line to the left of all requested eigenvalues and of the imaginary axis, (points,)."""
 
     def __init__(self, path: ParameterPath, interval: ArmInterval, mode_count: int):
         self.path = path
