@@ -17,7 +17,8 @@ from .validity_assessment import (
 )
 
 MAX_FOUR_DIGIT_RATIO = 1.1
-"""Ratios of an effect to its limit below this number are printed with four digits; two could read 1.0."""
+"""Ratios of an effect to its limit below this number are printed with four digits; with two digits such a
+ratio could read 1.0."""
 
 
 def not_applicable_sentences(arm: SlenderArm, assessment: ValidityAssessment) -> list[str]:
@@ -41,7 +42,7 @@ def not_applicable_sentences(arm: SlenderArm, assessment: ValidityAssessment) ->
 
 
 def _effect_name(effect: Effect, arm: SlenderArm, assessment: ValidityAssessment) -> str:
-    """Name of a neglected effect on an arm; compression under a pull is extension."""
+    """Name of a neglected effect on an arm; under a pull the effect of compression is named extension."""
     is_pulled = any(effect is loaded for loaded in assessment.compression_under_load) and arm.F < 0
     return "extension" if is_pulled else effect.name
 

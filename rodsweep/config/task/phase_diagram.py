@@ -85,7 +85,8 @@ class PhaseDiagramConfig(LinearConfig):
     needs_several_rods: ClassVar[bool] = True
     """True: a diagram needs a grid of rods."""
     nonlinear_parameters_used: ClassVar[tuple[str, ...]] = ("gamma1",)
-    """gamma1, on which the criticality and the cycles depend."""
+    """Parameters of the nonlinear rod that some options of the task use: gamma1, on which the criticality and
+    the cycles depend."""
 
     @property
     def plane_parameters(self) -> tuple[str, ...]:

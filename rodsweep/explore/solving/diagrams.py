@@ -26,8 +26,8 @@ ROW_COUNT_OF_SLOW_DIAGRAMS = 8
 """Number of values of the second parameter for rods that are not uniform or not of linear material, for which
 each value takes seconds, and for the search of folds and torus points of cycles."""
 LOAD_VALUE_COUNT = 121
-"""Number of load values. Additional values are cheap: the stability at all loads of a row follows from the
-thresholds on this row."""
+"""Number of load values. Additional values are cheap: the stability at all loads follows from the thresholds
+at the same value of the second parameter."""
 ARM_ROW_COUNT = 12
 """Number of values of the second quantity of the diagram, for arms."""
 ARM_QUANTITY_MAX_TO_CURRENT_RATIO = 2.0

@@ -198,7 +198,8 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
 
 
 def _has_representable_motion(arm: "SlenderArm") -> bool:
-    """Whether the unit of time, and the inertia of the fluid relative to its viscosity, are representable."""
+    """Whether the unit of time, and the inertia of the fluid relative to its viscosity, are representable as
+    floating-point numbers."""
     try:
         tau2 = min(arm.tau2_with(drag) for drag in arm.base_drag_estimates)
         inertia = arm.si.fluid_density * arm.si.length**2 / (arm.si.viscosity * tau2)

@@ -166,7 +166,7 @@ def move_journals_aside(directory: Path, paths: Iterable[Path]) -> Path:
 
 
 def kept_points_clause(directory: Path, fingerprint: str) -> str:
-    """Clause for messages with the directory of finished points in journals; empty without such points."""
+    """Clause that names the directory of journals with finished points; empty if no such journal exists."""
     has_points = journals_with_fingerprint(directory, fingerprint)
     return f"; finished points are kept in {directory}" if has_points else ""
 

@@ -12,7 +12,7 @@ from weakref import WeakSet
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SolverPoolSettings:
-    """Memory limit of a pool."""
+    """Memory limit of a pool of solvers."""
 
     max_bytes: int = 100_000_000
     """Above this memory, in bytes, a pool destroys its least recently used objects before it creates an

@@ -180,7 +180,7 @@ class BranchSearch:
             self.follow_from_symmetry_breakings()
 
     def _follow_from_breakings_beyond_range(self) -> None:
-        """Follows the branches of asymmetric cycles that enter the range from symmetry breakings beyond."""
+        """Follows branches of asymmetric cycles from symmetry breakings beyond the range into the range."""
         for region in self.regions:
             for entry in region.range_entries_from_symmetry_breakings():
                 self._follow_branch_into_range(entry, region)

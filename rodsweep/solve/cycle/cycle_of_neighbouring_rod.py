@@ -61,7 +61,8 @@ NEXT_MESH_SETTINGS = NextMeshSettings()
 UNKNOWN_EIGENVALUES: Complex = np.array([complex(nan, nan)])
 """Value of `CycleStart.eigenvalues` if the eigenvalues are not known."""
 CheckpointArrays = dict[str, Array]
-"""Data of a neighbour in a checkpoint: arrays by name, as `CycleStart.arrays` returns them."""
+"""Data of the previous rod of a chain in a checkpoint: arrays by name, as `CycleStart.arrays` returns
+them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +114,7 @@ class CycleStart:
 
     @classmethod
     def from_arrays(cls, arrays: CheckpointArrays) -> "CycleStart":
-        """The neighbour from the named arrays that `CycleStart.arrays` returns."""
+        """The data of the previous rod of a chain, from the named arrays that `CycleStart.arrays` returns."""
         next_mesh = OrbitMesh.from_array(arrays["next_mesh"])
         orbit = orbit_from_arrays(arrays)
         predictor = CyclePredictor(orbit, *(arrays[name] for name in ("places", "orders", "data")))

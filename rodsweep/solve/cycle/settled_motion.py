@@ -27,7 +27,7 @@ def max_settled_distance_from_cycle(accuracy: float) -> float:
 
 
 def with_reduced_tolerance(scheme: TimeScheme) -> TimeScheme:
-    """The time scheme `scheme` with a smaller local tolerance."""
+    """The time scheme `scheme` with the local tolerance multiplied by `successive_tolerance_ratio`."""
     return replace(scheme, tolerance=INTEGRATION_SETTINGS.successive_tolerance_ratio * scheme.tolerance)
 
 

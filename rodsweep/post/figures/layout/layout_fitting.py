@@ -29,8 +29,8 @@ MIN_TIME_PANEL_ASPECT = 0.25
 MAX_FIGURE_HEIGHT = 9.5
 """Largest height of a figure, in inches: the printable height of a page."""
 MAX_LAYOUT_PASSES = 6
-"""Largest number of layouts. Several layouts are needed, because each change of the figure moves texts that
-have been measured."""
+"""Maximum number of times that a figure is laid out. Each change of the figure moves texts that have been
+measured, so that the figure must be laid out again."""
 MIN_PANEL_HEIGHT = 0.45
 """Smallest height of a panel, in inches; two tick labels fit above each other."""
 EXTRA_HEIGHT_FOR_MEASURING_TEXTS = 4.0

@@ -55,7 +55,8 @@ class DrawnPlane:
 
 @dataclass(frozen=True, slots=True)
 class ClassifiedPoints:
-    """Points with known classes. axis_fractions: fractions of the axes, (n, 2). classes: (n,)."""
+    """Points of a plane with known classes, for example stability classes. axis_fractions: positions as
+    fractions of the two axes, (n, 2). classes: numbers of the classes, (n,)."""
 
     axis_fractions: Array
     classes: NDArray[Any]

@@ -43,8 +43,8 @@ class AsymmetricStartSettings:
     the symmetric cycles nearby. At an accuracy of 1e-3 Newton's method converges to symmetric cycles for 4 of
     6 rods, at 3e-4 for none."""
     newton_tolerance_for_fold_search: float = 1e-9
-    """Tolerance of Newton's method for the cycles whose parameter rates show a fold before the first
-    cycle."""
+    """Tolerance of Newton's method for the cycles at which the derivative of the parameter along the branch
+    is computed; these derivatives show whether a fold lies before the first cycle."""
     max_accuracy_beside_fold: float = 1e-6
     """Largest relative accuracy of the cycles of a branch with a fold before the first cycle. On a coarser
     mesh the fold may be missing: at an accuracy of 1e-5, a fold at a relative distance of 7e-7 from the
@@ -121,7 +121,7 @@ class _AsymmetricCycles:
     symmetric_orbit: Orbit
     """The symmetric cycle at the symmetry breaking, over the whole period."""
     matrix: BorderedMatrix
-    """Bordered matrix of the symmetric cycle, with the units of arc length."""
+    """Bordered matrix of the symmetric cycle; its `scale` contains the units of arc length."""
     null_vector: Array
     """Null vector of the linearised equations at the symmetric cycle, (N + 1,): change of orbit values and
     parameter coordinate for the relative distance 1."""

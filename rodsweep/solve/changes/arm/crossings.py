@@ -30,7 +30,7 @@ class ArmCrossingSettings:
     """Where many modes grow, all crossings between two counted arms are searched at once if their counts
     differ by at most this many pairs."""
     searched_frequency_over_largest_w: float = 4.0
-    """Modes near the axis at a crossing are searched for |Im w| up to this multiple of the largest |w|."""
+    """Modes near the axis at a crossing are searched for |Im w| up to this times the largest known |w|."""
     max_same_crossing_distance_in_errors: float = 10.0
     """Two crossings may be equal if their values differ by at most this multiple of their summed errors."""
     same_crossing_frequency_tolerance: float = 1e-6

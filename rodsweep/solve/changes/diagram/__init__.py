@@ -1,1 +1,1 @@
-"""Rows and boundary curves of a phase diagram."""
+"""Phase diagrams: rows (lines of constant second parameter) and boundary curves."""

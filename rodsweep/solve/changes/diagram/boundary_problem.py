@@ -35,13 +35,14 @@ class BoundaryCurveSettings:
     """Settings for points, ends and folds of a boundary curve."""
 
     max_distance_beyond_edge: float = 1e-9
-    """Largest distance by which a point on one edge of the plane may lie beyond another edge."""
+    """Largest distance, in units of the length of an axis, by which a point on one edge of the plane may lie
+    beyond another edge."""
     max_merged_distance: float = 1e-9
-    """Two neighbouring points of a curve are merged if their distance is at most this number, as at a start
-    on an edge of the plane."""
+    """Two neighbouring points of a curve are merged if their distance, in units of the length of an axis, is
+    at most this number, as at a start on an edge of the plane."""
     fold_location_tolerance: float = 1e-13
-    """Tolerance at a fold: of the component of the tangent that is 0 there, and of its position on the step,
-    divided by the length of the step."""
+    """Tolerance of the component of the tangent that vanishes at a fold, and of the position of the fold on a
+    step, divided by the length of the step."""
     hopf_tangent_rounding_error: float = 1e-12
     """Rounding error of the unit tangent to a curve of Hopf points."""
     double_eigenvalue_tangent_error: float = 1e-11

@@ -61,7 +61,7 @@ class RefinedCycle:
         return None if abs(excess) <= self.largest_multiplier_modulus_error else excess < 0
 
     def _accuracy_message(self, accuracy: float) -> str:
-        """Why the errors exceed the requested relative accuracy `accuracy`."""
+        """Sentence on the errors that exceed the requested relative accuracy `accuracy`."""
         rounding = relative_largest_y_rounding_error(self.converged_orbit)
         if rounding > accuracy:
             return (

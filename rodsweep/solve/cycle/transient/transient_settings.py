@@ -33,7 +33,8 @@ class TransientSettings:
     """Each attempt of Newton's method, up to this number of attempts, decreases the distance at which
     Newton's method starts, and doubles the number of returns before the next attempt."""
     max_state_jumps: int = 60
-    """Maximum number of jumps of a motion, to a scaled state or to a restart."""
+    """Maximum number of times that the state of a motion is replaced by a scaled state or by the leading mode
+    at a small amplitude."""
     restart_tip_y: float = 1e-3
     """Tip's y, in L, at a restart in the leading mode; the relative nonlinear change of the growth rate is
     about the square of this number."""
