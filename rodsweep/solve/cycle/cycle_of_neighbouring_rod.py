@@ -48,8 +48,8 @@ class NextMeshSettings:
     """A mesh is sufficient for the next cycle if the error of the current cycle is at most this fraction of
     the accuracy."""
     max_new_mesh_cost_ratio: float = 0.85
-    """A sufficient mesh is replaced by a new mesh if the number of multiplications for the elimination of
-    Newton's matrix on the new mesh is at most this fraction of their number on the sufficient mesh."""
+    """A sufficient mesh is replaced by a new mesh if the cost of eliminating Newton's matrix on the new mesh
+    is at most this fraction of the cost on the sufficient mesh."""
     max_new_mesh_cost_ratio_if_measured: float = 0.5
     """This limit replaces `max_new_mesh_cost_ratio` if the errors were measured at the current cycle:
     measuring the errors of a new mesh costs as much as three cycles."""

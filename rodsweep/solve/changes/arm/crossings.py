@@ -30,14 +30,14 @@ class ArmCrossingSettings:
     """Where many modes grow, all crossings between two counted arms are searched at once if their counts
     differ by at most this many pairs."""
     searched_frequency_over_largest_w: float = 4.0
-    """Modes near the axis at a crossing are searched for |Im w| up to this times the largest known |w|."""
+    """Modes near the axis at a crossing are searched up to |Im w| = this number * (largest known |w|)."""
     max_same_crossing_distance_in_errors: float = 10.0
     """Two crossings may be equal if their values differ by at most this multiple of their summed errors."""
     same_crossing_frequency_tolerance: float = 1e-6
     """Two crossings that may be equal by `max_same_crossing_distance_in_errors` are equal if the relative
     difference of their frequencies is at most this number."""
     min_interval_fraction: float = 1e-6
-    """An interval whose ends have equal unstable counts becomes a gap below this fraction of the path."""
+    """An interval with equal unstable counts at both ends is a gap if shorter than this path fraction."""
     min_relative_interval_length: float = 1e-12
     """The search fails at an interval without located crossings whose length, divided by the larger modulus
     of its ends, is at most this number: some thousand rounding errors."""
