@@ -67,7 +67,7 @@ class RegionBeyondRange:
 
     @property
     def range_end_coordinate(self) -> float:
-        """Coordinate of the end of the range at which the region begins."""
+        """Coordinate of the continuation parameter at the end of the range where the region begins."""
         return self.region_limits.coordinate_range[1 - self.range_end_index]
 
     def shorten_followed_part(self, coordinate: float) -> None:

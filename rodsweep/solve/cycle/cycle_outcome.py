@@ -138,7 +138,8 @@ class CycleOutcome:
     motion_shapes: MotionShapes | None = None
     """Shapes of the rod from the start of the motion, if requested."""
     start_for_next_rod: CycleStart | None = None
-    """Data of this cycle from which the search for the next rod of a chain starts; None outside a chain."""
+    """Data of this cycle from which the search for the next rod of a chain, a sequence of neighbouring rods,
+    starts; None outside a chain."""
 
 
 def with_measures(
