@@ -58,10 +58,9 @@ class BranchDerivatives:
         return float(self.unit_tangent[2])
 
     def arc_length_for_parameter_change(self, change: float) -> float:
-        """Signed arc length over which the scaled parameter coordinate changes by `change`: change /
-        `parameter_per_arc_length`. Near a fold, where the parameter may never change by `change`: an upper
-        bound of this length with the same sign, of modulus 2 sqrt(|change /
-        `parameter_second_derivative`|)."""
+        """Signed arc length over which the scaled parameter coordinate changes by `change`, to first order:
+        `change` / `parameter_per_arc_length`. Near a fold, where the parameter may never change that much, an
+        upper bound of the length, with the same sign: 2 sqrt(|change / `parameter_second_derivative`|)."""
         # Away from a fold the quadratic term changes the linear solution by an eighth at most.
         if self.parameter_per_arc_length**2 >= 4 * abs(self.parameter_second_derivative * change):
             return change / self.parameter_per_arc_length
@@ -90,14 +89,14 @@ class BranchErrorCalibration:
         return self.errors_at_equal_parameter.mesh
 
     def period_error(self, accuracy: float) -> float:
-        """Relative error of the period at equal parameter, at least a fraction of the relative accuracy. The
-        effect of a steep slope dy/dp of the largest tip y is removed if the slope of the period is less
-        steep."""
+        """Estimated relative error of the period at equal parameter, at least a fraction of the relative
+        accuracy `accuracy`. Where the largest tip y depends steeply on the parameter and the period does not,
+        the error of y due to this slope is left out (`_errors_for_period_estimate`)."""
         return self._errors_for_period_estimate.estimated_cycle_errors(accuracy).period_error
 
     def parameter_error(self, accuracy: float) -> float:
-        """Relative error of the parameter at equal deflection, with a safety factor, at least a fraction of
-        the relative accuracy and at least the rounding error."""
+        """Estimated relative error of the parameter at equal deflection, with a safety factor. The estimate
+        is at least a fraction of the relative accuracy `accuracy`, and at least the rounding error."""
         return max(
             MESH_ERROR_CALIBRATION_SETTINGS.error_safety_factor
             * float(self.parameter_errors_at_equal_deflection.sum()),
@@ -106,14 +105,14 @@ class BranchErrorCalibration:
         )
 
     def largest_weighted_error(self, accuracy: float) -> float:
-        """The number that must not exceed the accuracy: the larger of the parameter error, and the largest
-        weighted error at equal parameter divided by max(1, `relative_tip_y_sensitivity` /
-        `max_tip_y_sensitivity`)."""
+        """Error of the cycle that is compared with the relative accuracy `accuracy`: the larger of the
+        parameter error at equal deflection and of `CycleErrors.largest_weighted_error` at equal parameter,
+        the latter divided by `_allowed_errors_per_accuracy`."""
         return self._errors_for_mesh_choice.estimated_cycle_errors(accuracy).largest_weighted_error
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh on which `largest_weighted_error` is predicted within the accuracy; the next
-        finer mesh if no such mesh is allowed."""
+        """The cheapest mesh on which the predicted `largest_weighted_error` does not exceed `accuracy`; the
+        next finer mesh if no mesh within the limits of planning suffices."""
         return cheapest_mesh(self._errors_for_mesh_choice, accuracy)
 
     def cheapest_mesh_at_equal_deflection(self, accuracy: float) -> OrbitMesh:
@@ -123,16 +122,16 @@ class BranchErrorCalibration:
 
     @property
     def _allowed_errors_per_accuracy(self) -> float:
-        """Ratio, at least 1, of the allowed errors at equal parameter to the accuracy."""
+        """Factor, at least 1, by which errors at equal parameter may exceed the accuracy of the cycle."""
         # Errors at equal p are proportional to the slope dy/dp; a steep slope is not a defect of the mesh.
         return max(1.0, self.relative_tip_y_sensitivity / BRANCH_ERROR_SETTINGS.max_tip_y_sensitivity)
 
     @cached_property
     def _errors_for_period_estimate(self) -> MeshErrorCalibration:
         """Errors from which the error of the period is estimated: errors at equal parameter, but the errors
-        of largest y and path, which limit the error of the period from below, without the part that a steep
-        slope dy/dp causes. Near a Hopf point a mesh displaces this point, and y at equal p changes by a large
-        fraction, but the period does not; at a fold both change."""
+        of the largest y and of the tip's path, which set a lower limit to the error of the period, without
+        the part that a steep slope dy/dp causes. Near a Hopf point, which a mesh displaces, y at equal p
+        changes by a large fraction, but the period does not; at a fold both change."""
         reduction = max(1.0, self._allowed_errors_per_accuracy / max(1.0, self.relative_period_sensitivity))
         errors = self.errors_at_equal_parameter.mesh_errors.copy()
         errors[:, [Y_INDEX, PATH_INDEX]] /= reduction
@@ -140,8 +139,8 @@ class BranchErrorCalibration:
 
     @cached_property
     def _errors_for_mesh_choice(self) -> MeshErrorCalibration:
-        """Errors from which the mesh is chosen: errors at equal parameter, reduced as in
-        `largest_weighted_error`, and the parameter error."""
+        """Errors from which the mesh is chosen: the errors at equal parameter, divided by
+        `_allowed_errors_per_accuracy`; the error of the period is at least the parameter error."""
         errors = self.errors_at_equal_parameter.mesh_errors / self._allowed_errors_per_accuracy
         errors[:, PERIOD_INDEX] = np.maximum(
             errors[:, PERIOD_INDEX], self.parameter_errors_at_equal_deflection
@@ -150,8 +149,8 @@ class BranchErrorCalibration:
 
     @cached_property
     def _calibration_with_parameter_errors(self) -> MeshErrorCalibration:
-        """A calibration in which the errors of period, largest y, extrema and path equal the parameter error
-        at equal deflection, in space and in time; the error of the multiplier is unchanged."""
+        """Calibration for the choice of a mesh by the parameter alone: the relative errors of period, largest
+        y, extrema and path are replaced by the error of the parameter at equal deflection."""
         # A copy, because many cycles share one calibration.
         errors = self.errors_at_equal_parameter.mesh_errors.copy()
         errors[:, [PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX]] = (
@@ -160,7 +159,8 @@ class BranchErrorCalibration:
         return replace(self.errors_at_equal_parameter, mesh_errors=errors)
 
     def with_grown_errors(self, growth: Array) -> "BranchErrorCalibration":
-        """The calibration with all errors in space and in time multiplied by `growth`, (2,)."""
+        """The calibration with all errors due to the elements multiplied by `growth[0]`, and all errors due
+        to the time intervals by `growth[1]`; growth: (2,)."""
         own = self.errors_at_equal_parameter
         calibration = replace(own, mesh_errors=growth[:, None] * own.mesh_errors)
         return replace(
@@ -176,14 +176,14 @@ class BranchErrorCalibration:
         sensitivities: tuple[float, float],
         multiplier_sensitivity: MultiplierErrorAmplification,
     ) -> "BranchErrorCalibration":
-        """Interpolated errors of a cycle on the branch between two measured cycles with the same mesh. other:
-        errors of the second measured cycle. fraction: arc length from the first measured cycle to the
-        interpolated cycle, divided by the arc length between the measured cycles. sensitivities
-        (`relative_tip_y_sensitivity`, `relative_period_sensitivity`), multiplier_sensitivity: of the
-        interpolated cycle. Near a fold or a Hopf point errors at equal parameter are proportional to the
-        sensitivity, which changes by factors between two cycles; therefore error divided by sensitivity is
-        interpolated. The result is not below the smaller of the two measured errors, which need not depend on
-        the sensitivity.
+        """Errors of a cycle between two measured cycles on one branch and one mesh, interpolated. self,
+        other: errors of the first and of the second measured cycle. fraction: arc length from the first
+        measured cycle to the interpolated cycle, divided by the arc length between the measured cycles.
+        sensitivities: (`relative_tip_y_sensitivity`, `relative_period_sensitivity`) of the interpolated
+        cycle. multiplier_sensitivity: of the interpolated cycle, too. Near a fold or a Hopf point errors at
+        equal parameter are proportional to the sensitivity, which changes by factors between two cycles;
+        therefore error divided by sensitivity is interpolated. The result is at least the smaller of the two
+        measured errors.
         """
         first, second = (
             self.errors_at_equal_parameter.mesh_errors,
@@ -210,8 +210,9 @@ class BranchErrorCalibration:
 
     @property
     def _error_sensitivity_factors(self) -> Array:
-        """Factors, (5,), by which errors of the cycle at equal parameter grow: `relative_tip_y_sensitivity`,
-        at least 1; for the multiplier times the factor of `multiplier_sensitivity`."""
+        """Sensitivities, (5,), to which the errors at equal parameter are proportional near a fold or a Hopf
+        point: max(1, `relative_tip_y_sensitivity`); for the multiplier, this number times
+        `error_growth_factor`."""
         factors = np.full(ERROR_COUNT, max(self.relative_tip_y_sensitivity, 1.0))
         factors[LARGEST_MULTIPLIER_ERROR_INDEX] *= self.multiplier_sensitivity.error_growth_factor
         return factors
@@ -219,8 +220,8 @@ class BranchErrorCalibration:
 
 def _log_interpolated_errors(first_errors: Array, second_errors: Array, fraction: float) -> Array:
     """Geometric interpolation between the errors `first_errors` and `second_errors`, arrays of equal shape,
-    at the fraction `fraction` of the distance from the first to the second; multiplied by
-    `interpolation_safety_factor`, but not above the larger of the two errors."""
+    at the fraction `fraction` of the way from the first to the second. The result is multiplied by
+    `interpolation_safety_factor`, but is at most the larger of the two errors."""
     larger_errors = np.maximum(first_errors, second_errors)
     smallest = larger_errors / BRANCH_ERROR_SETTINGS.max_error_ratio_for_interpolation
     # Errors of a mesh change by factors along a branch, so geometric means are interpolated.

@@ -35,8 +35,8 @@ def first_cycle_with_measured_errors(
     another mesh if necessary; raises Unsolvable.
 
     scale: units of arc length. side: direction of the branch in components (deflection, log period,
-    parameter), (3,). arc_from_start: arc length from the special point where the branch starts; parameter and
-    multipliers are quadratic in this arc length.
+    parameter), (3,). arc_from_start: arc length from the Hopf point or other special point where the branch
+    starts, in which parameter and largest multiplier change quadratically near the start.
     """
     tangent = tangent_at(solved.orbit, scale, side, linearisation_of(solved))
     derivatives = branch_derivatives(solved, scale, tangent)
@@ -57,8 +57,8 @@ def first_cycle_with_measured_errors(
 
 
 def is_error_measurement_due(point: BranchCycle, accuracy: float) -> bool:
-    """Whether the errors of the cycle `point`, of the relative accuracy `accuracy`, must be measured: the
-    last measured cycle is too many steps away, or the errors have grown too much since that cycle."""
+    """Whether the errors of the cycle `point` of a branch must be measured: too many steps follow the last
+    measured cycle, or the coefficient tails have grown too much since. accuracy: relative accuracy."""
     settings = BRANCH_MESH_SETTINGS
     errors = point.calibration.errors_at_equal_parameter.with_errors_scaled_on_branch(point.orbit)
     growth = float(errors.error_growth_since_measurement.max())
@@ -83,8 +83,8 @@ def with_measured_errors(point: BranchCycle, accuracy: float) -> BranchCycle:
 def with_errors_of_calibration(
     point: BranchCycle, calibration: BranchErrorCalibration, accuracy: float
 ) -> BranchCycle:
-    """The cycle `point`, solved to a relative accuracy, with the errors of `calibration`, which was measured
-    or interpolated at this cycle. Its steps and arc length since an error measurement are set to 0."""
+    """The cycle `point` with the errors of `calibration`, measured or interpolated at this cycle. The steps
+    and the arc length since the last measurement are set to 0. accuracy: relative accuracy."""
     before = point.cycle
     cycle = _cycle_with_branch_errors(calibration, before.converged_orbit, accuracy, before.motion)
     return replace(
@@ -102,8 +102,9 @@ def _cycle_with_branch_errors(
     accuracy: float,
     motion: CycleMotion | None = None,
 ) -> RefinedCycle:
-    """The solved orbit `solved` as a cycle, with the errors of a calibration measured or interpolated at this
-    orbit. accuracy: relative accuracy. motion: motion of the orbit, if known."""
+    """The orbit `solved` as a cycle with the errors of a calibration at this orbit; the error of the period
+    is the estimate for a branch, `BranchErrorCalibration.period_error`. accuracy: relative accuracy. motion:
+    motion of the orbit, None if not computed yet."""
     cycle = cycle_with_calibrated_errors(calibration.errors_at_equal_parameter, solved, accuracy, motion)
     return replace(cycle, errors=replace(cycle.errors, period_error=calibration.period_error(accuracy)))
 
@@ -111,9 +112,9 @@ def _cycle_with_branch_errors(
 def solve_on_sufficient_mesh(
     point: BranchCycle, accuracy: float, condition: BorderCondition | None = None
 ) -> BranchCycle:
-    """The cycle `point` with measured errors within the relative accuracy, on a finer mesh if its own does
-    not suffice; raises Unsolvable if no allowed mesh suffices, or if no cycle is found on a mesh. condition:
-    equation that defines the same cycle on every mesh; by default the condition that its arc length is
+    """The cycle `point` with measured errors within the relative accuracy `accuracy`, on a finer mesh if
+    needed; raises Unsolvable if no allowed mesh suffices, or if no cycle is found on a mesh. condition:
+    equation that selects the same cycle of the branch on every mesh; by default, that its arc length is
     unchanged."""
     condition = condition or point.arc_length_condition(0.0)
     count = BRANCH_MESH_SETTINGS.max_meshes_per_cycle
@@ -134,8 +135,8 @@ def solve_on_sufficient_mesh(
 def solved_on_mesh(
     point: BranchCycle, mesh: OrbitMesh, condition: BorderCondition, accuracy: float
 ) -> BranchCycle:
-    """The cycle `point` solved on the mesh `mesh` to a relative accuracy; its errors are estimated from the
-    calibration of `point`. Raises Unsolvable. condition: equation that defines the same cycle on every mesh.
+    """The cycle `point` solved on the mesh `mesh`, with errors from its calibration, which belongs to its old
+    mesh; raises Unsolvable. condition: equation that selects the same cycle of the branch on every mesh.
     """
     solved = condition.solve_on_mesh(
         mesh,
@@ -161,13 +162,13 @@ def solved_on_mesh(
 def cycles_with_errors_within_accuracy(
     measured: BranchCycle, points: Sequence[BranchCycle], accuracy: float, condition: BorderCondition | None
 ) -> list[BranchCycle]:
-    """The cycles `points` of a branch, all with errors within the accuracy; raises Unsolvable. measured: the
-    cycle before `points`, whose errors were measured.
+    """The successive cycles `points` of a branch, all with errors within the accuracy; raises Unsolvable.
+    measured: the cycle before `points`, whose errors are measured.
 
-    Errors are measured at the last cycle; at the cycles between, the errors of `measured` and of the last
-    cycle are interpolated. The last cycle is solved on a finer mesh if its own does not suffice; every other
-    cycle that is too inaccurate is solved again on this mesh. condition: equation that keeps the last cycle
-    the same on all meshes; by default, that its arc length is unchanged.
+    Errors are measured at the last cycle; at the other cycles they are interpolated. If the last cycle needs
+    a finer mesh, it is solved on that mesh, and so is every other cycle whose errors exceed the accuracy.
+    condition: equation that selects the same last cycle on all meshes; by default, that its arc length is
+    unchanged.
     """
     *between, end = points
     total_length = end.arc_length_since_error_measurement
@@ -193,8 +194,8 @@ def cycles_with_errors_within_accuracy(
 
 def _cycle_on_mesh_of(end: BranchCycle, point: BranchCycle, accuracy: float) -> BranchCycle:
     """The cycle `point`, whose estimated errors exceed the accuracy, solved again on the mesh of the later
-    cycle `end`, with the errors of `end`. If `end` has the mesh of `point`, or if the errors of `end` are too
-    large, the errors of `point` itself are measured and determine its mesh. Raises Unsolvable."""
+    cycle `end`, with the errors of `end`. If both cycles have the same mesh, or if the errors of `end` are
+    too large, the errors of `point` itself are measured and determine its mesh. Raises Unsolvable."""
     if mesh_of_orbit(end.orbit) == mesh_of_orbit(point.orbit):
         return solve_on_sufficient_mesh(point, accuracy)
     solved = solved_on_mesh(point, mesh_of_orbit(end.orbit), point.arc_length_condition(0.0), accuracy)
@@ -207,14 +208,14 @@ def _cycle_on_mesh_of(end: BranchCycle, point: BranchCycle, accuracy: float) -> 
 def _with_interpolated_errors(
     start: BranchCycle, point: BranchCycle, end: BranchCycle, fraction: float, accuracy: float
 ) -> BranchCycle:
-    """The cycle `point` with errors interpolated between the measured cycles `start` and `end`, the latter on
-    the same mesh; raises Unsolvable.
+    """The cycle `point`, which lies between the measured cycles `start` and `end`, with interpolated errors;
+    `end` has the mesh of `point`. Raises Unsolvable.
 
     fraction: fraction of the arc length from `start` to `end` at which `point` lies. accuracy: relative
-    accuracy of the cycles. If `start` has another mesh, the errors of `end` are used. If the coefficient
-    tails of `point` are much larger than at `start` and `end`, or if the parameter changes more slowly than
-    at `start` and `end`, as near a fold, the errors at `start` and `end` are not a bound: the interpolated
-    errors are multiplied by the growth, or measured if the growth is large or the parameter changes slowly.
+    accuracy. If `start` has another mesh, the errors of `end` are used. If the coefficient tails of `point`
+    are much larger than at `start` and `end`, the interpolated errors are multiplied by the growth of the
+    squared tails. The errors of `point` are measured instead if this growth is large, or if the parameter
+    changes more slowly along the branch than at `start` and `end`, as near a fold.
     """
     # Errors are interpolated only between cycles on one mesh.
     if mesh_of_orbit(start.orbit) != mesh_of_orbit(point.orbit):

@@ -43,9 +43,9 @@ class StableStates(IntEnum):
 class CoexistenceRow:
     """Outcome for a row of a phase diagram. straight_rod_row: outcome for the straight rod. stable_states:
     `StableStates` at each parameter value, (values,). special_points: special points of all branches. status:
-    status of the search for thresholds if this search has a problem, otherwise status of the branches.
-    followed_range: smallest and largest value of the parameter up to which branches are followed, as in
-    `BranchesOfRod`. message: for the user, or "". seconds: computing time, in s."""
+    status of the search for thresholds of the straight rod if this search has a problem, otherwise status of
+    the branches. followed_range: smallest and largest parameter value to which branches are followed, NaN if
+    none are. message: for the user, or "". seconds: computing time, in s."""
 
     straight_rod_row: DiagramRow
     stable_states: NDArray[np.int8]
@@ -115,8 +115,8 @@ def row_branches(
 
 
 def _first_searched_value(row: DiagramRow, request: RowRequest) -> float:
-    """Value of the parameter from which the row was searched for thresholds: the first value of `request`, or
-    a later value if no a-priori bound or no mesh covers a strong pull."""
+    """Parameter value from which the row was searched for thresholds: the first value of `request`; a later
+    value if no a-priori bound or no mesh is available for the strongly pulled rods before it."""
     result = row.thresholds.search_result
     values = request.parameter_values
     first = result.searched_interval[0]
@@ -125,7 +125,7 @@ def _first_searched_value(row: DiagramRow, request: RowRequest) -> float:
 
 
 def _branch_request(start: float, request: RowRequest) -> BranchRequest:
-    """Request for the branches of a row from the parameter value `start` on."""
+    """Request for the branches of a row between the parameter value `start` and the row's last value."""
     return BranchRequest(
         along=request.parameter_name,
         start=start,
@@ -147,8 +147,8 @@ def special_points_of(branches: BranchesOfRod) -> tuple[SpecialPoint, ...]:
 
 
 def _undecided_values_text(name: str, values: Array) -> str:
-    """Message about the values `values` of the parameter `name`, (n,), at which the stable states are
-    undecided because of the cycles; empty for n = 0."""
+    """Message about the values of the parameter `name`, (n,), in increasing order, at which the stable states
+    are undecided because of the cycles, not of the straight rod; empty for n = 0."""
     if not len(values):
         return ""
     count = counted(len(values), "value")
@@ -188,8 +188,8 @@ class StabilityInterval:
 
 def existence_of_stable_cycle(values: Array, branches: BranchesOfRod, certify: bool) -> NDArray[np.int8]:
     """Existence of a stable cycle at each parameter value, (values,): 1 if a stable cycle exists, 0 if no
-    branch has a stable cycle, -1 if undecided. branches: all branches of the row. certify: whether 0 requires
-    a proof that no Hopf point is missing."""
+    branch has one, -1 if undecided. branches: all branches of the row. certify: whether 0 requires a proof
+    that the list of Hopf points, from which the branches start, is complete."""
     is_complete = branches.status in (BranchStatus.ok, BranchStatus.special_undecided)
     is_known = is_complete and (branches.are_crossings_proved_complete or not certify)
     existence = np.full(len(values), 0 if is_known else -1, dtype=np.int8)
@@ -207,8 +207,8 @@ def existence_of_stable_cycle(values: Array, branches: BranchesOfRod, certify: b
 
 
 def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
-    """Intervals of the parameter between successive special points of the branch `curve`, with the stability
-    in each interval."""
+    """Intervals of the parameter between successive special points of the branch `curve`, in the order of the
+    branch, with the stability of the cycles in each interval."""
     intervals = []
     for first, second in zip(curve.special_points[:-1], curve.special_points[1:], strict=True):
         cycles = curve.stored_cycles[first.index_of_cycle_before + 1 : second.index_of_cycle_before + 1]
@@ -230,9 +230,9 @@ def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
 
 
 def _sign_of_range_shortening(point: SpecialPoint) -> int:
-    """Sign of the error of a special point in `range_shortened_by_errors`: 1 (the interval is shortened), or
-    -1 at an end of the parameter range, where the branch has a cycle exactly at the end (the interval is
-    extended)."""
+    """Sign of the error of a special point at an end of an interval in `range_shortened_by_errors`: 1, the
+    interval is shortened by the error. -1 at an end of the parameter range: the interval is extended by the
+    error, because the branch has a cycle exactly at the end."""
     return -1 if point.end_reason is BranchEndReason.range_end else 1
 
 

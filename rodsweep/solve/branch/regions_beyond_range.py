@@ -17,8 +17,9 @@ from .status import BranchEndReason
 
 
 def regions_beyond_range(path: ParameterPath, limits: BranchLimits, margin: float) -> list[RegionBeyondRange]:
-    """The regions beyond the ends of the range of `limits`, along `path`. margin: smallest relative distance
-    from the crushing force."""
+    """The regions next to the lower and the upper end of the parameter range of `limits`, in which branches
+    are followed on; a region that does not exist is left out. path: rods along the parameter. margin:
+    smallest relative distance of the force from the crushing force."""
     regions = (_region_beyond_range_end(path, index, limits, margin) for index in (0, 1))
     return [region for region in regions if region is not None]
 
@@ -26,9 +27,10 @@ def regions_beyond_range(path: ParameterPath, limits: BranchLimits, margin: floa
 def _region_beyond_range_end(
     path: ParameterPath, index: int, limits: BranchLimits, margin: float
 ) -> RegionBeyondRange | None:
-    """The region beyond the end `index` of the range of `limits`, within the allowed values of the parameter;
-    None at a crushed rod and at a coordinate of 0 or less. margin: smallest relative distance from the
-    crushing force."""
+    """The region next to the end `index` (0: lower, 1: upper end of the coordinate) of the range of `limits`,
+    within the allowed values of the parameter. None if the coordinate at this end is 0 or less, if the force
+    nearly crushes the rod there, or if no rod that the branch can reach lies beyond. margin: as in
+    `regions_beyond_range`."""
     end = limits.coordinate_range[index]
     if end <= 0 or limits.end_reasons[index] is BranchEndReason.crushed:
         return None
@@ -66,9 +68,9 @@ def _region_beyond_range_end(
 def _hopf_points_and_search_ends(
     path: ParameterPath, index: int, limits: BranchLimits
 ) -> tuple[list[HopfBranchStart], list[float]]:
-    """Returns (Hopf points in the region of `limits`, coordinates beyond which Hopf points may be missing).
-    index: `RegionBeyondRange.range_end_index`. limits: limits of the region, in which `hopfs_beyond_range`
-    are the Hopf points within the range."""
+    """Returns (Hopf points in the region of `limits`, coordinates). Beyond each of the coordinates, as seen
+    from the range, Hopf points may be missing. index: 0 for the region below the range, 1 above. limits:
+    limits of the region; their `hopfs_beyond_range` are the Hopf points within the range."""
     low, high = sorted(map(path.parameter.value, limits.coordinate_range))
     try:
         search = find_imaginary_axis_crossings(path, low, high, certify=False)
@@ -94,8 +96,8 @@ def _hopf_points_and_search_ends(
 def _ends_of_complete_hopf_search(
     path: ParameterPath, index: int, limits: BranchLimits, search: ThresholdSearchResult
 ) -> list[float]:
-    """Coordinates beyond which the result `search` may lack Hopf points. path, index, limits: as in
-    `_hopf_points_and_search_ends`."""
+    """Coordinates beyond which, as seen from the range, Hopf points may be missing in the result `search`.
+    path, index, limits: as in `_hopf_points_and_search_ends`."""
     ends = []
     if search.ended_early:
         # The search begins at the smallest coordinate.
@@ -109,8 +111,9 @@ def _ends_of_complete_hopf_search(
 
 
 def _far_end_of_region(end: float, index: int, name: str) -> float:
-    """Coordinate of the parameter `name` at the far end of the region beyond an end of a range. end:
-    coordinate of this end, not negative. index: 0 below the range, 1 above."""
+    """Parameter coordinate at the end of a region that is farther from the range. end: coordinate at the end
+    of the range where the region begins, not negative. index: 0 for the region below the range, 1 above.
+    name: parameter."""
     factor = 1 + BEYOND_RANGE_SETTINGS.extent_over_largest_coordinate
     # Along the force the region ends at 0, from below which no cycle comes.
     return end * factor if index == 1 else end / factor * (name != "F")

@@ -9,9 +9,10 @@ from ..unsolvable import Unsolvable, WorkLimitReached
 
 
 class BranchEndReason(IntEnum):
-    """Reason for the end of a branch at a special point of kind `end`. range_end (end of the parameter range)
-    and crushed (the force nearly crushes the rod) are true ends; no_cycle_found and list_full (maximum number
-    of cycles, or limit of the work on the rod) are failures."""
+    """Reason why a branch ends at a special point of kind `end`. range_end: end of the parameter range.
+    crushed: the force nearly crushes the rod. These two are ends of the branch within the range;
+    no_cycle_found and list_full (maximum number of cycles, or limit of the work on the rod) are failures of
+    the continuation."""
 
     range_end = 1
     crushed = 2

@@ -89,15 +89,14 @@ class BorderedMatrix:
         return relative_change(self.orbit, orbit.values - self.orbit.values)
 
     def newton_step(self, border: Array, residual: float) -> Array:
-        """Newton's step at the orbit, (N + 1,), which changes `border` . `scale.components` by `residual`,
-        to first order. border: last row of the matrix, (3,). residual: residual of the condition that
-        closes the system, by `BorderCondition.residual`."""
+        """Newton's step at the orbit, (N + 1,), which changes `border` . `scale.components` by `residual`, to
+        first order. border: last row, coefficients of (deflection, log period, parameter), (3,). residual:
+        residual of the condition `BorderCondition` that closes the system."""
         return self.solve(border, np.append(self._right_sides, residual), self._stage_columns[:, :, 1], 1.0)
 
     def newton_step_at_nearby_orbit(self, orbit: Orbit, border: Array, residual: float) -> Array:
         """Approximate Newton's step, (N + 1,), at a neighbouring `orbit` with a similar parameter, from the
-        factors of this matrix. border: last row of the matrix, (3,). residual: residual of the condition that
-        closes the system."""
+        factors of this matrix. border, residual: as in `newton_step`, the residual at `orbit`."""
         factors = self._memory.factors
         p = self.orbit.orbit_equations
         columns, ends = reduced_residuals(
@@ -134,7 +133,7 @@ class BorderedMatrix:
 
     def parameter_derivative_by_other_parameter(self, name: str, border: Array) -> float:
         """Derivative of the parameter coordinate with respect to the coordinate of another parameter `name`,
-        along the cycles with equal `border` . `scale.components`, (3,).
+        along cycles that all have the same value of `border` . `scale.components`; border: (3,).
 
         At a fold the derivative does not depend on `border`: it is the slope of the curve of folds.
         """
@@ -148,8 +147,9 @@ class BorderedMatrix:
         return float(self.solve(border, np.array([*sides, phase_side, 0.0]), columns[:, :, 0], 1.0)[-1])
 
     def orbit_increments_at_fixed_parameter(self, starts: Array, columns: Array) -> Array:
-        """v increments of the orbit, (v, N + 1), at fixed period and parameter. starts: increments of the
-        start state, (v, n). columns: their reduced right-hand sides at the stages, (K, s, v, n)."""
+        """Increments of the orbit, (v, N + 1), at fixed period and parameter, for v increments `starts` of
+        the start state, (v, n). columns: reduced right-hand sides at the stages for `starts`, (K, s, v,
+        n)."""
         out = np.empty_like(columns)
         substitute_stages(starts, columns, self.orbit.orbit_equations, self._memory.factors, out)
         stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
@@ -196,9 +196,9 @@ class BorderedMatrix:
 
         jump: distance S x(0) - x(end) from the end of the last interval to this image, (n,), S: symmetry. The
         other intervals have no jump, because the orbit has one state for the end of an interval and the start
-        of the next. columns: reduced right-hand sides of the stages, (K, s, 1, n). end_increments: increment
-        of the state at the end of the last time interval that `columns` cause if the first state is fixed,
-        (1, n).
+        of the next. columns: right-hand sides of the stages, reduced by the factors of the matrix, (K, s, 1,
+        n). end_increments: increment of the state at the end of the last time interval that `columns` cause
+        if the first state is fixed, (1, n).
         """
         p = self.orbit.orbit_equations
         sides = -self._shooting_intervals.end_increments_for_fixed_starts(
@@ -208,10 +208,8 @@ class BorderedMatrix:
         return sides.ravel()
 
     def _matching_and_phase_right_sides(self, orbit: Orbit, columns: Array, end_increments: Array) -> Array:
-        """Right-hand sides of the m matching conditions of an orbit, one for each of its m shooting
-        intervals, and of the phase condition, (m n + 1,). columns: reduced right-hand sides, (K, s, 1, n).
-        end_increments: increment of the state at the end of the last time interval that `columns` cause if
-        the first state is fixed, (1, n)."""
+        """Right-hand sides of the m matching conditions of an orbit, one for each shooting interval, and of
+        the phase condition, (m n + 1,). columns, end_increments: as in `matching_right_sides`."""
         p = orbit.orbit_equations
         matching_sides = self.matching_right_sides(
             closing_residual(orbit.all_states, p), columns, end_increments
@@ -236,7 +234,8 @@ class BorderedMatrix:
     def _back_substitute(self, increments: Array, sides: Array, fraction: float) -> Array:
         """Increment of orbit values and parameter, (N + 1,). increments: increments of the states at the
         starts of the shooting intervals, of the period and of the parameter, (m n + 2,). sides: right-hand
-        sides of the stages, (K, s, n). fraction: factor on `sides`."""
+        sides of the stages, (K, s, n). fraction: factor on `sides`, 1 for a Newton step, 0 for a null
+        vector."""
         n = len(self.orbit.start_state)
         stages = (
             increments[-2] * self._stage_columns[:, :, 0]

@@ -39,7 +39,8 @@ class DetectedKinds(NamedTuple):
 
 
 def special_kinds_between(start: BranchCycle, end: BranchCycle) -> DetectedKinds:
-    """Kinds of the special points between the cycles `start` and `end`."""
+    """Kinds of the special points between the successive cycles `start` and `end`, from the parameter's
+    change of direction and from the multipliers of the two cycles."""
     kinds = []
     # A fold is where the parameter turns; a multiplier near 1 is too uncertain to show it.
     if start.parameter_per_arc_length * end.parameter_per_arc_length < 0:
@@ -60,8 +61,8 @@ def special_kinds_between(start: BranchCycle, end: BranchCycle) -> DetectedKinds
 
 
 def fold_and_breaking_kinds_between(start: BranchCycle, end: BranchCycle) -> list[SpecialPointKind]:
-    """Kinds of those special points between the cycles `start` and `end` at which further branches may begin
-    or a branch turns back: fold and symmetry breaking."""
+    """The kinds fold and symmetry breaking, if such a special point lies between the cycles `start` and
+    `end`: at a fold the branch turns back, at a symmetry breaking further branches may begin."""
     # Torus points are left out: no branch of cycles begins at one, and the branch does not turn.
     kinds = (
         [SpecialPointKind.fold] if start.parameter_per_arc_length * end.parameter_per_arc_length < 0 else []
@@ -75,8 +76,8 @@ def fold_and_breaking_kinds_between(start: BranchCycle, end: BranchCycle) -> lis
 
 
 def _count_of_multipliers_below_minus_one(point: BranchCycle) -> int:
-    """Number of real multipliers of the cycle `point`, over the solved time interval, that are less than
-    -1."""
+    """Number of real multipliers of the cycle `point` that are less than -1. The multipliers are over the
+    solved time interval, as in `_count_of_multipliers_above_one`."""
     return int((_real_multipliers(point) < -1).sum())
 
 
@@ -102,13 +103,14 @@ def _has_complex_pair(point: BranchCycle) -> bool:
 
 
 def lie_on_one_branch(start: BranchCycle, end: BranchCycle) -> bool:
-    """Whether the successive cycles `start` and `end` can lie on one smooth branch; False if the step leads
-    to another branch, which nearly touches the first one.
+    """Whether the successive cycles `start` and `end` can lie on one smooth branch; False if the step has
+    jumped to a second branch, which nearly touches the branch of `start`.
 
-    Along a branch the derivative of the parameter, divided by the product of 1 - m over the nontrivial
-    multipliers m, is finite and not 0: both vanish at a fold. The sign of this quotient changes only at a
-    cycle where two branches meet. If the sign is uncertain, because a multiplier is 1 within its error, the
-    prediction error of `end` decides, unless nothing changes.
+    Along a branch the derivative of the parameter with respect to arc length, divided by the product of 1 - m
+    over the nontrivial multipliers m, is finite and not 0: numerator and denominator both vanish at a fold.
+    The quotient changes its sign only where two branches meet. If a multiplier is 1 within its error, the
+    sign is uncertain: then neither a fold nor a changed multiplier, or a small prediction error of `end`, is
+    required.
     """
     has_fold = start.parameter_per_arc_length * end.parameter_per_arc_length < 0
     change = _count_of_multipliers_above_one(start) - _count_of_multipliers_above_one(end)
@@ -127,8 +129,8 @@ def _has_multiplier_indistinct_from_trivial(point: BranchCycle) -> bool:
 
 
 def _count_of_multipliers_above_one(point: BranchCycle) -> int:
-    """Number of real multipliers of the cycle `point`, over the solved time interval, that are larger than
-    1."""
+    """Number of real multipliers of the cycle `point` that are larger than 1. The multipliers are over the
+    solved time interval: half a period for a symmetric cycle, otherwise a period."""
     return int((_real_multipliers(point) > 1).sum())
 
 
@@ -143,9 +145,9 @@ def special_points_and_completeness(
     whether these points explain the change of the number of multipliers outside the unit circle.
 
     cycle_at: function that solves a cycle at an arc length between the two cycles. accuracy: relative
-    accuracy of the branch. halvings: number of halvings so far. The step is halved if the multipliers show
-    several special points, or if a special point cannot be located. Near crushing, for example, a prediction
-    over the whole step may leave the model.
+    accuracy of the branch. halvings: number of halvings of the step so far. The step is halved if the
+    multipliers show several special points, or if a special point cannot be located: near crushing, for
+    example, the prediction over the whole step may have a stretch h1 <= 0.
     """
     kinds, are_complete = special_kinds_between(start, end)
     points = [special_point_between(kind, start, end, accuracy) for kind in kinds] if are_complete else []

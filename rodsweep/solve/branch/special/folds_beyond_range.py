@@ -1,5 +1,6 @@
-"""Folds beyond the range of the rows of a diagram. Curves of folds through them may cross, beyond the range,
-rows whose branches have no Hopf point anywhere; such a branch may enter the range."""
+"""Folds of cycles on the rows of a phase diagram, at parameter values beyond the range of the diagram. Curves
+of folds through these points may cross rows whose branches start at no Hopf point; such a branch may enter
+the range."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -11,13 +12,15 @@ from ....arrays import Array
 from .special_point import RowSpecialPoint, SpecialPoint, SpecialPointKind
 
 FOLDS_ARRAY_NAME = "folds_beyond"
-"""Name of the array of a row's folds beyond the range, (folds, 3): parameter along the row, period, tip y."""
+"""Name of the array of the folds of a row beyond the range, (folds, 3): value of the parameter that varies
+along the row, period in tau2, largest tip y in L."""
 
 
 @dataclass(frozen=True, slots=True)
 class RowWorkItems:
-    """Rows as work items numbered from `first_item_number`. row_parameter_name, row_parameter_values: name of
-    the row parameter, and its value by index of the row."""
+    """Rows of a phase diagram as work items, numbered from `first_item_number` in the order of the row index.
+    row_parameter_name, row_parameter_values: name of the parameter that differs between rows, and its values
+    by index of the row."""
 
     progress_noun: ClassVar[str] = "rows"
     """Plural noun for the work items in the progress display."""
@@ -30,11 +33,12 @@ class RowWorkItems:
 
     @property
     def end_item_number(self) -> int:
-        """Number of rows plus `first_item_number`."""
+        """First item number after these rows: `first_item_number` plus the number of rows."""
         return self.first_item_number + len(self.row_parameter_values)
 
     def items_to_solve(self, results: Mapping[int, dict[str, Array]]) -> list[int]:
-        """Numbers of the rows without a result. results: arrays, (...,) each, by name and number."""
+        """Item numbers of the rows that have no entry in `results`. results: arrays of each solved row,
+        (...,) each, by item number and name."""
         return [item for item in range(self.first_item_number, self.end_item_number) if item not in results]
 
     def row_index_of_item(self, item: int) -> int:
@@ -49,25 +53,25 @@ class RowWorkItems:
 
 @dataclass(frozen=True, slots=True)
 class FoldsBeyondRange(RowWorkItems):
-    """Rows whose branches leave the range or enter it; the results are the folds of these branches beyond the
-    range."""
+    """Work items that find the folds beyond the range of the diagram, on rows with a branch of cycles that
+    leaves or enters the range."""
 
     done_item_phrase: ClassVar[str] = "row with branches that leave the range"
-    """Noun for one row and what was done with it, for the report at the end of a run."""
+    """Singular noun phrase for a finished work item, for the report at the end of a run."""
     item_label_prefix: ClassVar[str] = "folds beyond the range"
     """Text before the row parameter in the progress display."""
 
     def branch_starts_of_row(self, row: int) -> tuple[SpecialPoint, ...]:
-        """No special points: the branches of the row with the index `row` are the branches of the first
-        stage."""
+        """Returns (): no branches are followed in addition to the known branches of the row with index
+        `row`."""
         return ()
 
     def solve(
         self, item: int, known_points: Callable[[int], tuple[SpecialPoint, ...]], limits: tuple[float, float]
     ) -> dict[str, Array]:
-        """Folds of the row of a work item beyond the range `limits` of the parameter along the rows, as the
-        array with the name FOLDS_ARRAY_NAME, (folds, 3). known_points: function from the index of a row to
-        its special points, within the range and beyond."""
+        """The folds of one row outside the range `limits` of the parameter along the row, as the array with
+        the name FOLDS_ARRAY_NAME, (folds, 3). item: item number of the row. known_points: function from the
+        index of a row to all special points of the row, within the range and beyond."""
         folds = [
             (point.parameter_value, point.period, point.tip_y_max)
             for point in known_points(self.row_index_of_item(item))
@@ -77,8 +81,8 @@ class FoldsBeyondRange(RowWorkItems):
         return {FOLDS_ARRAY_NAME: np.array(folds, dtype=float).reshape(-1, 3)}
 
     def special_points(self, results: Mapping[int, dict[str, Array]]) -> list[RowSpecialPoint]:
-        """The folds of all rows. results: arrays with the name FOLDS_ARRAY_NAME, (folds, 3), of all work
-        items, by number."""
+        """The folds of all rows. results: for each item number, the arrays of the row by name, of which
+        FOLDS_ARRAY_NAME, (folds, 3), is used."""
         return [
             RowSpecialPoint(
                 row_index=self.row_index_of_item(item),

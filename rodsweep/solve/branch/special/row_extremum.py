@@ -1,5 +1,6 @@
-"""Extrema of the row parameter along a curve of folds: a closed branch of cycles shrinks to one cycle there,
-or two branches exchange their parts."""
+"""Extrema of the row parameter (the parameter that differs between the rows of a phase diagram) along a curve
+of folds. At an extremum a closed branch of cycles shrinks to a single cycle and vanishes, or two branches of
+cycles meet and are connected differently on the two sides."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -24,8 +25,8 @@ ROW_EXTREMUM_SETTINGS = RowExtremumSettings()
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _PointWithSlope:
-    """A point of a curve with exchanged roles. slope: derivative, along the curve, of the position on the row
-    axis with respect to the position on the axis of the parameter along a row."""
+    """A point of a curve with exchanged roles, see `ParameterRoles`. slope: dy/dx along the curve, y: row
+    parameter, x: parameter along a row, each scaled to 0 ... 1 over its axis."""
 
     point: SolvedCurvePoint
     slope: float
@@ -34,10 +35,9 @@ class _PointWithSlope:
 def points_with_row_parameter_extrema(
     problem: CurvePointSolver, points: Sequence[SolvedCurvePoint]
 ) -> list[SolvedCurvePoint]:
-    """The points of a curve, in order, with the parameter along a row as the branch parameter, and further
-    points at the extrema of the row parameter. points: points with errors and any roles of the parameters. An
-    extremum that cannot be located is omitted; the point after it has a `row_parameter_error_at_extremum` of
-    NaN."""
+    """The points of a curve, in order, all with unexchanged roles, and further points at the extrema of the
+    row parameter. points: points with errors, with or without exchanged roles. An extremum that cannot be
+    located is omitted; the point after it has a `row_parameter_error_at_extremum` of NaN."""
     sloped_points = {}
     for i, point in enumerate(points):
         # The chords to and from points with exchanged roles.
@@ -78,8 +78,8 @@ def points_with_row_parameter_extrema(
 def _parameter_error_along_row(
     problem: CurvePointSolver, sloped_points: Mapping[int, _PointWithSlope], i: int
 ) -> float:
-    """Absolute error of the parameter along a row at point i of `sloped_points`, at which only the error of
-    the row parameter is known."""
+    """Absolute error of the parameter along a row at point i of `sloped_points`. Only the error of the row
+    parameter is known there; slope and curvature of the curve convert it."""
     sloped_point = sloped_points[i]
     line_axis = problem.axis_along_row
     row_axis = problem.row_parameter_axis
@@ -96,8 +96,8 @@ def _parameter_error_along_row(
 
 
 def _slope_change_rate(first: _PointWithSlope, second: _PointWithSlope) -> float:
-    """Change of the slope from the point `first` to the point `second`, divided by the change of the position
-    along a row."""
+    """Second derivative of the curve y(x) of `_PointWithSlope`: change of the slope from `first` to `second`,
+    divided by the change of x."""
     return (second.slope - first.slope) / (second.point.row_coordinate - first.point.row_coordinate)
 
 

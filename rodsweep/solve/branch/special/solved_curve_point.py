@@ -27,8 +27,8 @@ class CurveSecantSettings(KernelConstants):
     max_points_per_error_measurement: int = 3
     """Maximum number of successive points of a curve that share one measured error."""
     max_tip_y_of_small_cycle: float = 0.05
-    """If the largest tip y, in L, is smaller than this number, the fold test function is divided by the
-    deflection; without this division the function vanishes at a Hopf point too."""
+    """Below this largest tip y, in L, the test function of a fold is divided by the deflection of the cycle;
+    without the division the function vanishes at a Hopf point too."""
     first_secant_step: float = 1e-3
     """First step of the secant method across a curve, in arc length, if no derivatives are known."""
     max_secant_step: float = 0.1
@@ -39,24 +39,25 @@ class CurveSecantSettings(KernelConstants):
     """Largest distance, in arc length, of a point from the curve after the last, linear step of the secant
     method."""
     max_secant_error_per_accuracy: float = 0.1
-    """Largest relative error of the parameter along a row that the distance of a point from the curve may
-    cause, divided by `relative_parameter_accuracy`."""
+    """The distance of a point from the curve may cause at most this fraction of `relative_parameter_accuracy`
+    as relative error of the parameter along a row."""
     relative_slope_error: float = 1e-3
     """Relative error of derivatives that were computed at the same point on another mesh or at an earlier
     step of the same search, in addition to the effect of the curvature."""
     relative_error_of_previous_slope: float = 0.1
-    """Assumed relative error of derivatives that were computed at the previous point of the curve; multiplied
-    by the curvature if the curvature exceeds 1."""
+    """Assumed relative error of derivatives that were computed at the previous point of the curve, before it
+    is multiplied by max(1, assumed relative curvature of the test function)."""
     curvature_growth_factor: float = 4.0
-    """Assumed curvature of the test function at a point, divided by the curvature at the previous point."""
+    """Assumed growth of the relative curvature of the test function from one point of the curve to the
+    next."""
     min_cosine_for_derivative_reuse: float = 0.9
-    """Derivatives along one direction across the curve are used for another direction only if the cosine of
-    the angle between the two directions is at least this number."""
+    """Derivatives along one direction across the curve serve for another direction only if the cosine of the
+    angle between the two directions is at least this number."""
     min_cycle_distance_for_derivatives: float = 1e-6
     """Derivatives are computed from two cycles only if their distance, in arc length, is at least this
     number, because the test function has an error of 1e-8."""
     error_per_mesh_difference: float = 3.0
-    """The error estimate is the difference between the points on two meshes, times this factor."""
+    """Factor from the difference between the points on two meshes to the error estimate."""
     min_relative_error: float = 3e-9
     """Smallest relative error estimate of the parameter along a row."""
     element_order_increase: int = 2
@@ -73,10 +74,9 @@ CURVE_SECANT_SETTINGS = CurveSecantSettings()
 
 
 class SearchLine(NamedTuple):
-    """Line across a curve of special points, on which a point of the curve is searched.
-
-    direction: unit vector, (2,), in components (along the branch, row coordinate). chord_slope: slope of the
-    curve, for the error of the parameter at a fixed row."""
+    """Line across a curve of special points, on which a point of the curve is searched. direction: unit
+    vector, (2,), in components (arc length along the branch, `row_coordinate`). chord_slope: change of the
+    parameter along a row per `row_coordinate` along the curve, for error estimates."""
 
     direction: Array
     chord_slope: float = 0.0
@@ -101,7 +101,8 @@ class NormalDerivatives:
     difference_quotient_distance: float
     """Distance between the two cycles of the difference quotient."""
     contraction_rate: float = inf
-    """Ratio of successive corrections, divided by the relative distance from the matrix; inf if unknown."""
+    """Ratio of successive corrections, divided by the cycle's relative distance from the orbit of the matrix;
+    inf if unknown."""
     relative_test_function_curvature: float = inf
     """Modulus of the second derivative of the test function, divided by the first; inf if unknown."""
 
@@ -117,12 +118,10 @@ class NormalDerivatives:
 
 @dataclass(frozen=True, eq=False)
 class CurveErrorCalibration:
-    """Measured error of a point of a curve. At the next points the error is used again, scaled with the
-    squared coefficient tails.
-
-    relative_error: relative error of the parameter along a row at the measured point. coefficient_tails,
-    mesh: coefficient tails in space and time, (2,), and mesh of the orbit at the measured point. reuse_count:
-    number of points since the measurement."""
+    """Measured error of a point of a curve, used again at the next points, scaled with the squared
+    coefficient tails. relative_error: relative error of the parameter along a row at the measured point.
+    coefficient_tails, mesh: coefficient tails in space and time, (2,), and mesh of the orbit at the measured
+    point. reuse_count: number of points since the measurement."""
 
     relative_error: float
     coefficient_tails: Array
@@ -130,15 +129,15 @@ class CurveErrorCalibration:
     reuse_count: int = 0
 
     def error_at(self, point: "SolvedCurvePoint") -> float:
-        """Absolute error of the parameter along a row at a neighbouring point with the same mesh: the
-        measured relative error, increased by the squared growth of the tails, times the parameter."""
+        """Absolute error of the parameter along a row at the neighbouring point `point` with the same mesh:
+        measured relative error, times squared growth of the tails (at least 1), times parameter."""
         # Errors are of second order in the tails.
         growth = float((smooth_space_and_time_tails(point.orbit) / self.coefficient_tails).max()) ** 2
         return max(growth, 1.0) * self.relative_error * abs(point.branch_parameter_value)
 
     def applies_at(self, point: "SolvedCurvePoint") -> bool:
-        """Whether the measured error may be used at the later point `point` of the curve: the measurement is
-        recent, the mesh is the same, and the scaled error is within the accuracy."""
+        """Whether the measured error may be used at the later point `point`: `reuse_count` is below its
+        limit, the mesh is the same, and the scaled error is within the accuracy."""
         max_reuses = CURVE_SECANT_SETTINGS.max_points_per_error_measurement - 1
         is_recent = self.reuse_count < max_reuses and mesh_of_orbit(point.orbit) == self.mesh
         return is_recent and self.error_at(point) <= CURVE_SECANT_SETTINGS.relative_parameter_accuracy * abs(
@@ -153,8 +152,8 @@ class CurveErrorCalibration:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SolvedCurvePoint:
-    """A solved point of a curve of special points. In a point with exchanged roles (`ParameterRoles`), the
-    parameter along a row and the row parameter change places in the meaning of every field."""
+    """A solved point of a curve of special points in the plane (parameter along a row, row parameter), see
+    `ParameterRoles`. At a point with exchanged roles the two parameters change places in every field."""
 
     orbit: Orbit
     """The cycle at this point of the curve."""
@@ -164,7 +163,7 @@ class SolvedCurvePoint:
     """Direction of the branch along the row, (3,), a unit vector in components (deflection, log period,
     parameter)."""
     row_coordinate: float
-    """Position on the axis of the row parameter, from 0 to 1."""
+    """Row parameter, the parameter that differs between rows, scaled to 0 ... 1 over its range."""
     branch_parameter_value: float
     """Value of the parameter along a row."""
     row_parameter_value: float
@@ -186,13 +185,13 @@ class SolvedCurvePoint:
         return abs(float(self.orbit.form.tip_coordinates(self.orbit.start_state)[1]))
 
     def has_mesh_and_roles_of(self, other: "SolvedCurvePoint") -> bool:
-        """Whether mesh and branch parameter of this point and of the point `other` agree."""
+        """Whether this point and the point `other` have equal meshes and the same branch parameter."""
         has_same_roles = self.scale.parameter_name == other.scale.parameter_name
         return has_same_roles and mesh_of_orbit(self.orbit) == mesh_of_orbit(other.orbit)
 
     def step_from(self, other: "SolvedCurvePoint") -> Array:
-        """Step from the point `other` to this point, (4,), in components (deflection, log period, parameter
-        along a row, row coordinate)."""
+        """Step from the point `other` to this point, (4,): components (deflection, log period, parameter
+        along a row) in units of `scale`, and the change of `row_coordinate`."""
         difference = self.scale.components(self.orbit) - self.scale.components(other.orbit)
         return np.append(difference, self.row_coordinate - other.row_coordinate)
 
@@ -205,12 +204,12 @@ class SolvedCurvePoint:
 
 
 def points_with_parameter_errors(points: Sequence[SolvedCurvePoint]) -> list[SolvedCurvePoint]:
-    """The points of a curve, in order, with the field `branch_parameter_error` set: the error by the mesh
+    """The points of a curve, in order, with the field `branch_parameter_error` set: the error due to the mesh
     plus the error of the secant method.
 
-    A measured point has its measured error. A point between two measured points has the larger of the errors
-    scaled from these points; the later measured point is used only if it has the same mesh. Raises ValueError
-    if a point has no error estimate.
+    The error due to the mesh is the error measured last on the curve, scaled to the point; or, if larger, the
+    error measured next, scaled back to the point, if that point has the same mesh. Raises ValueError if a
+    point has no measured error.
     """
     points_with_errors: list[SolvedCurvePoint] = []
     measured_point: SolvedCurvePoint | None = None

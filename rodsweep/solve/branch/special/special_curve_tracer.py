@@ -1,5 +1,5 @@
-"""Curves through the folds and torus points on all rows of a phase diagram. Each curve is followed only once,
-in two halves from a special point of a row; each half is a work item."""
+"""Curves through the folds and torus points of cycles on all rows of a phase diagram. Each curve is followed
+once, as two half curves from a special point of a row; each half curve is a work item."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -28,11 +28,11 @@ FOLLOWED_KIND_NOUNS = {SpecialPointKind.fold: "folds", SpecialPointKind.torus: "
 
 @dataclass(frozen=True, slots=True)
 class SpecialCurveTracer:
-    """Curves through all folds and torus points of the rows of a parameter plane, traced as half curves.
-    axis_along_row, row_parameter_axis: axes of the parameter along a row and of the row parameter.
-    special_points: points through which curves are traced. Half curve (work item) `first_item_number` + 2 i
-    leads from special point i to larger values of the row parameter, `first_item_number` + 2 i + 1 to smaller
-    values."""
+    """Curves through all folds and torus points on the rows of a parameter plane, traced as half curves. A
+    row has the rods that differ only in the parameter of `axis_along_row`; the row parameter, of
+    `row_parameter_axis`, differs between rows. special_points: points through which curves are traced. From
+    special point i, half curve (work item) `first_item_number` + 2 i leads to larger values of the row
+    parameter, half curve `first_item_number` + 2 i + 1 to smaller values."""
 
     done_item_phrase: ClassVar[str] = "piece of curves of folds and torus points followed"
     progress_noun: ClassVar[str] = "pieces of curves"
@@ -42,9 +42,9 @@ class SpecialCurveTracer:
     row_parameter_axis: PlaneAxis
     special_points: Sequence[RowSpecialPoint]
     values_of_rows_with_known_branches: Mapping[int, float] = field(default_factory=dict)
-    """Value of the row parameter by index of the row, for rows whose branches are all known."""
+    """Value of the row parameter on each row whose branches of cycles are all known, by index of the row."""
     special_points_not_to_trace: Sequence[RowSpecialPoint] = ()
-    """Further special points of the rows: not traced from, but recognised if they lie on a traced curve."""
+    """Special points of the rows from which no curve is traced, but which may lie on a traced curve."""
     branch_starts_by_row: Mapping[int, tuple[SpecialPoint, ...]] = field(default_factory=dict)
     """Special points from which branches of a row are followed in addition to its branches from Hopf points,
     by index of the row."""
@@ -52,7 +52,7 @@ class SpecialCurveTracer:
 
     @property
     def end_item_number(self) -> int:
-        """Number of half curves plus `first_item_number`."""
+        """First item number after the half curves of this tracer: `first_item_number` plus their number."""
         return self.first_item_number + 2 * len(self.special_points)
 
     def items_to_solve(self, results: Mapping[int, HalfCurveArrays]) -> list[int]:
@@ -68,8 +68,8 @@ class SpecialCurveTracer:
         return [self.first_item_number + item for item in items]
 
     def unexplained_crossings(self, results: Mapping[int, HalfCurveArrays]) -> list[RowCrossing]:
-        """Crossings of all curves with complete rows at which no special point lies; valid if
-        `items_to_solve(results)` is empty."""
+        """Crossings of a traced curve with a row whose branches are all known, although none of these
+        branches has a special point there; valid if `items_to_solve(results)` is empty."""
         return [
             crossing
             for _, search in self._tracing_states_by_kind(results)
@@ -80,8 +80,8 @@ class SpecialCurveTracer:
     def point_of_each_curve_leaving_range(
         self, results: Mapping[int, HalfCurveArrays]
     ) -> list[RowSpecialPoint]:
-        """A special point of each curve that leaves the range of the parameter along the rows; valid if
-        `items_to_solve(results)` is empty."""
+        """One of `special_points` on each curve that leaves the range of the parameter along the rows; valid
+        if `items_to_solve(results)` is empty."""
         return [
             # Any point of the curve would do; the smallest index makes the choice the same in each run.
             self.special_points[min(traced.distances_along_row)]
@@ -103,7 +103,7 @@ class SpecialCurveTracer:
     def _tracing_states_by_kind(
         self, results: Mapping[int, HalfCurveArrays]
     ) -> "Iterator[tuple[_CurvesOfKind, CurveTracingState[_TracedCurve]]]":
-        """Yields (curves with `results`, state of the search for these curves) for each kind of points."""
+        """Yields (curves of one kind, state of the search for them), for folds and for torus points."""
         # Numbers run through all stages, but the seeds of this stage are counted from 0.
         own_results = {number - self.first_item_number: result for number, result in results.items()}
         max_distance = CURVE_IDENTITY_SETTINGS.max_distance_from_curve_per_row_length
@@ -115,8 +115,8 @@ class SpecialCurveTracer:
     def solve(
         self, item: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
     ) -> HalfCurveArrays:
-        """The result of half curve number `item`, as `TracedHalfCurve.arrays`. located: function that returns
-        the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
+        """The arrays of half curve number `item`, see `TracedHalfCurve.arrays`. located: function from the
+        index of a row to the special points of the row, with their cycles. workspace: memory of matrices."""
         index, is_backward = divmod(item - self.first_item_number, 2)
         point = self.special_points[index]
         axes = self.axis_along_row, self.row_parameter_axis
@@ -145,8 +145,8 @@ class SpecialCurveTracer:
 
 @dataclass(frozen=True, slots=True)
 class _TracedCurve:
-    """Curve of two halves. distances_along_row: distances of nearby special points in row lengths, by point
-    index. crossings: crossings with complete rows at which no special point lies."""
+    """A curve joined from two half curves. distances_along_row: distance from the curve to each special point
+    near it, as a fraction of the row, by index of the point. crossings: as in `unexplained_crossings`."""
 
     curve: SpecialPointCurve
     """The curve, joined from its two halves."""
@@ -156,20 +156,20 @@ class _TracedCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvesOfKind:
-    """Curves of one kind as a problem of `trace_all_curves`. tracer: axes of the plane, and special points
-    through which curves are traced. results: arrays of half curves, by number."""
+    """The curves of folds, or of torus points, as argument of `trace_all_curves`. tracer: plane and special
+    points. results: arrays of solved half curves, by number from 0."""
 
     kind: SpecialPointKind
     tracer: SpecialCurveTracer
     results: Mapping[int, HalfCurveArrays]
 
     def next_seed(self, untraced: Sequence[int]) -> int:
-        """The median of the special points `untraced`, for which both halves of the curve have similar
-        lengths."""
+        """The middle one of the special points `untraced`, ordered by the row parameter: the two halves of
+        its curve then have similar lengths."""
         return sorted(untraced, key=self._sort_key)[len(untraced) // 2]
 
     def missing_work_items(self, seed: int) -> list[int]:
-        """Numbers of the half curves missing for the curve through special point `seed`; [] if complete."""
+        """Numbers of the unsolved half curves of the curve through special point `seed`; [] if none."""
         forward_item = 2 * seed
         backward_item = 2 * seed + 1
         # Both halves are asked for at once, because the second is needed unless the first closes.
@@ -181,8 +181,8 @@ class _CurvesOfKind:
         return [backward_item] if needs_backward and backward_item not in self.results else []
 
     def possible_later_items(self, search: "CurveTracingState[_TracedCurve]") -> list[int]:
-        """Numbers of half curves that may be needed later: from special points on no curve yet, on the rows
-        where the half curves needed now start."""
+        """Numbers of half curves that may be needed later: half curves from special points that lie on no
+        traced curve, on rows from which a half curve in `search.missing_items` starts."""
         rows = {self.tracer.special_points[item // 2].row_parameter_value for item in search.missing_items}
         # On these rows the cycles are solved again for the needed half curves anyway.
         candidates = sorted(
@@ -210,8 +210,8 @@ class _CurvesOfKind:
         return _TracedCurve(curve, distances, forward.crossings + backward.crossings)
 
     def distance_along_row(self, curve: _TracedCurve, seed: int) -> float:
-        """Distance of the special point `seed` from a curve along the row, in row lengths; inf if the point
-        is not near, 0 if the point lies on the curve's extrapolation to a Hopf point."""
+        """Distance along the row from special point `seed` to a curve, as a fraction of the row. inf if the
+        point is not near; 0 if it lies on the straight extrapolation of the curve to a Hopf point."""
         distance = curve.distances_along_row.get(seed, math.inf)
         is_off_curve = distance > CURVE_IDENTITY_SETTINGS.max_distance_from_curve_per_row_length
         # Between its last cycle and the Hopf point a curve is extrapolated: no cycle is solved there.
@@ -228,7 +228,7 @@ class _CurvesOfKind:
         return point.row_parameter_value, point.parameter_value
 
     def _lies_on_extrapolation(self, curve: SpecialPointCurve, special_point: RowSpecialPoint) -> bool:
-        """Whether the special point `special_point` lies on the extrapolation of a curve to a Hopf point."""
+        """Whether a special point lies on the straight line from a curve's last cycle to a Hopf point."""
         # Larger cycles lie on the part of the curve that was solved.
         if special_point.tip_y_max >= SPECIAL_CURVE_END_SETTINGS.min_amplitude:
             return False

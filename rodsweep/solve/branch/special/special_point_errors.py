@@ -22,9 +22,10 @@ from .special_point import SPECIAL_POINT_SETTINGS, SpecialPoint, SpecialPointKin
 
 
 class TestFunctionZero(NamedTuple):
-    """Zero of a test function on a mesh, by the secant method. arc_length: arc length of the zero on its
-    segment. orbit: cycle at the zero. test_function_slope: slope of the test function. last_secant_step: last
-    secant step, signed, over which the cycle is moved along its tangent."""
+    """Zero of a test function along a branch, on one mesh, by the secant method. arc_length: from the start
+    of the segment to the zero. orbit: cycle at the zero. test_function_slope: derivative with respect to arc
+    length. last_secant_step: last, signed step in arc length; the cycle was moved by this step along its
+    tangent."""
 
     arc_length: float
     orbit: Orbit
@@ -59,10 +60,11 @@ def with_mesh_errors(
     segment: BranchSegment,
     accuracy: float,
 ) -> SpecialPoint:
-    """The special point with errors. Errors of the mesh follow from the differences from `coarser_point`, the
-    same point on a coarser mesh. The error of the zero on the mesh is added, except for the parameter at a
-    fold. zeros: zeros on both meshes, the coarser first. accuracy: relative accuracy of the parameter. Only
-    if both meshes agree within this accuracy, errors are assumed to decrease by the ratio of
+    """The special point `point` with errors. The errors due to the mesh follow from the differences from
+    `coarser_point`, the same special point on a coarser mesh. The error of the zero of the test function is
+    added, except to the parameter of a fold, which is stationary there. zeros: zeros on both meshes, the
+    coarser mesh first. segment: part of the branch with the special point. accuracy: relative accuracy of the
+    parameter. If both meshes agree within it, the differences are multiplied by
     `_remaining_error_per_mesh_difference`."""
     coarser_zero, zero = zeros
     values, coarser_values = (
@@ -102,7 +104,7 @@ def with_mesh_errors(
 
 
 def _test_function_error(point: SpecialPoint) -> float:
-    """Error of the test function of a special point at a cycle."""
+    """Error with which the test function is evaluated at a cycle near the special point `point`."""
     settings = SPECIAL_POINT_SETTINGS
     if point.kind is SpecialPointKind.fold:
         growth = settings.tip_y_of_doubled_fold_error / point.tip_y_max
@@ -115,8 +117,8 @@ def _test_function_error(point: SpecialPoint) -> float:
 
 
 def _parameter_period_and_tip_y_ahead(zero: TestFunctionZero, segment: BranchSegment) -> Array:
-    """Parameter, period and largest tip y, (3,), of a cycle beside the zero that was found last on `segment`,
-    at the distance `sensitivity_arc_length` along its tangent."""
+    """Parameter, period and largest tip y, (3,), of the cycle at the arc length `sensitivity_arc_length` from
+    the last located zero of `segment`, along the tangent there. zero: this zero."""
     name = segment.start.scale.parameter_name
     motion = motion_displaced_along_tangent(zero.orbit, name, segment.last_arc_length_cycle_and_tangent[2])
     value = getattr(motion.orbit.form.rod, name)
@@ -126,9 +128,9 @@ def _parameter_period_and_tip_y_ahead(zero: TestFunctionZero, segment: BranchSeg
 def _remaining_error_per_mesh_difference(
     coarser_zero: TestFunctionZero, zero: TestFunctionZero, segment: BranchSegment
 ) -> float:
-    """Assumed error on the mesh of `zero`, divided by the difference between this mesh and the mesh of
-    `coarser_zero`: q/(1 - q), q: ratio of the errors on the finer and on the coarser mesh, in space or in
-    time, whichever is larger."""
+    """Assumed error on the mesh of `zero`, divided by its difference from the coarser mesh of `coarser_zero`:
+    q/(1 - q), where q < 1 is the factor by which the error decreases from the coarser mesh to the mesh of
+    `zero`: the factor in space or the factor in time, whichever is larger."""
     coarser_mesh, mesh = mesh_of_orbit(coarser_zero.orbit), mesh_of_orbit(zero.orbit)
     measured_decay = float(
         segment.end.calibration.errors_at_equal_parameter.log_space_error_decay_per_order[PERIOD_INDEX]
@@ -146,9 +148,10 @@ def unlocated_point(
     kind: SpecialPointKind, start: BranchCycle, end: BranchCycle, message: str
 ) -> SpecialPoint:
     """A special point that is not located: values at the cycle `end`, with the differences between `start`
-    and `end` as errors. A fold may lie beyond the two cycles, because rounding turns the parameter back where
-    it is nearly constant, as near a generalised Hopf point: the error of the largest tip y is then at least
-    its value, and that of the period grows in proportion. message: cause."""
+    and `end` as errors. message: reason. A fold may lie outside the interval from `start` to `end`: where the
+    parameter is nearly constant, as near a generalised Hopf point, rounding errors may reverse its change.
+    For a fold the relative error of the largest tip y is therefore at least 1, and that of the period grows
+    in proportion."""
     name = start.scale.parameter_name
     measures = end.cycle.measures
     start_measures = start.cycle.measures

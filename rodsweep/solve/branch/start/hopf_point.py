@@ -37,7 +37,7 @@ class HopfBranchStart:
     is_omega_always_unknown: bool = False
     """Whether the angular velocity Omega is an unknown for all cycles of the branch, see `StressForm`."""
     min_coordinate_unit: float = 0.0
-    """Smallest unit of the parameter coordinate on the branch, see `ArcLengthScale`."""
+    """Smallest unit of the parameter coordinate in arc lengths on the branch, see `ArcLengthScale`."""
 
     @property
     def period(self) -> float:
@@ -66,8 +66,8 @@ class HopfBranchStart:
 
     @property
     def relative_amplitude_coefficient_error(self) -> float:
-        """Relative error of the amplitude coefficient: half the sum of the relative errors of Re c (c: Landau
-        coefficient), of the real part of `eigenvalue_slope_by_coordinate`, and of the parameter at the Hopf
+        """Relative error of the amplitude coefficient: half the sum of three relative errors, of Re c (c:
+        Landau coefficient), of Re `eigenvalue_slope_by_coordinate`, and of the parameter at the Hopf
         point."""
         c = self.normal_form_coefficients.landau
         slope = self.eigenvalue_slope_by_coordinate
@@ -128,10 +128,9 @@ def hopf_branch_start(
     is_omega_always_unknown: bool = False,
     min_coordinate_unit: float = 0.0,
 ) -> HopfBranchStart:
-    """The Hopf point with its normal form, at a crossing of the imaginary axis along the parameter path
-    `path`; raises Unsolvable. is_omega_always_unknown: whether the angular velocity Omega is an unknown for
-    all cycles of the branch. min_coordinate_unit: smallest unit of the parameter's coordinate in arc
-    lengths."""
+    """The start of a branch at a Hopf point, with its normal form; raises Unsolvable. path: rods along the
+    continuation parameter. crossing: the Hopf point on this path. is_omega_always_unknown,
+    min_coordinate_unit: fields of the result, see `HopfBranchStart`."""
     w = complex(0.0, crossing.frequency)
     rod = path.rod_at(path.coordinate(crossing.value))
     # Started at the located frequency, so the same eigenvalue is found again, now with its slope.
@@ -152,8 +151,9 @@ def hopf_branch_start(
 
 
 def _accurate_coefficients(rod: Rod, crossing: Threshold) -> HopfCoefficients:
-    """The coefficients of the normal form at the Hopf point `crossing`, to the first possible one of
-    `landau_coefficient_accuracies`; raises Unsolvable. rod: the rod at the Hopf point."""
+    """The coefficients of the normal form at the Hopf point `crossing`, to the first of the relative
+    accuracies `landau_coefficient_accuracies` that can be reached; raises Unsolvable if none can. rod: the
+    rod there."""
     reason = Unsolvable()
     for accuracy in BRANCH_START_SETTINGS.landau_coefficient_accuracies:
         try:
@@ -164,8 +164,9 @@ def _accurate_coefficients(rod: Rod, crossing: Threshold) -> HopfCoefficients:
 
 
 def accuracy_near_hopf_points(hopfs: Sequence[HopfBranchStart], accuracy: float) -> float:
-    """Relative accuracy of the cycles of a rod with the given Hopf points: the requested `accuracy`, or a
-    smaller number if a Hopf point is close to a generalised Hopf point."""
+    """Relative accuracy to which the cycles of a rod with the given Hopf points are solved: the requested
+    `accuracy`, or a smaller number if a Hopf point is close to a generalised Hopf point, where the amplitude
+    is sensitive."""
     max_coefficient = max((abs(hopf.amplitude_coefficient) for hopf in hopfs), default=0.0)
     # Negated, so that a nan coefficient does not set the accuracy.
     if not max_coefficient > BRANCH_START_SETTINGS.max_nondegenerate_amplitude_coefficient:

@@ -15,18 +15,18 @@ if TYPE_CHECKING:
 
 
 class NearbyCycleSolver:
-    """Solver for cycles of a family, with their test function, near a cycle whose Newton matrix is
-    factorised."""
+    """Solver for the cycles near an orbit whose Newton matrix is factorised, and for the values of the test
+    function at these cycles. The family defines the rods, the units of arc length and the test function."""
 
     def __init__(self, family: "CycleFamily", start: Orbit, contraction: float) -> None:
-        """family: family of the cycles. start: orbit at which the first matrix is assembled. contraction:
-        initial value of `contraction_rate`, measured at earlier cycles of the family; inf if
-        unknown."""
+        """family: defines rods and test function of the cycles. start: orbit at which the first matrix is
+        assembled. contraction: initial value of `contraction_rate`, measured at earlier cycles of the family;
+        inf if unknown."""
         self._family = family
         self.contraction_rate = contraction
-        """Assumed contraction rate: ratio of successive corrections, divided by the relative distance of the
-        cycle from the orbit of the matrix. Each solution of a cycle updates the rate unless the family is
-        `has_small_cycles`."""
+        """Assumed contraction rate: ratio of successive corrections of a cycle, divided by the relative
+        distance of the cycle from the orbit at which the matrix was assembled. Each solved cycle updates the
+        rate, unless the cycles are small (`CycleFamily.has_small_cycles`)."""
         self._assemble_matrix(start)
 
     def _assemble_matrix(self, orbit: Orbit) -> None:
@@ -39,11 +39,13 @@ class NearbyCycleSolver:
     def cycle_and_test_value(
         self, orbit: Orbit, condition: BorderCondition, slope: float, tolerance: float
     ) -> tuple[Orbit, float]:
-        """(cycle near `orbit` that fulfils `condition`, value of its test function); raises Unsolvable.
+        """Returns (cycle near `orbit` that fulfils `condition`, value of its test function); raises
+        Unsolvable.
 
-        slope: approximate modulus of the derivative of the test function across the curve. tolerance:
-        relative tolerance of cycle and test function; far from the curve
-        `MINIMALLY_AUGMENTED_SETTINGS.cycle_tolerance_over_curve_distance` allows more."""
+        condition: equation that selects one of the nearby cycles. slope: approximate modulus of the
+        derivative of the test function across the curve. tolerance: relative tolerance of cycle and test
+        function; far from the curve, where the test function is not near 0, a multiple of that distance is
+        enough (`MINIMALLY_AUGMENTED_SETTINGS.cycle_tolerance_over_curve_distance`)."""
         previous_change = 0.0
         for _ in range(MINIMALLY_AUGMENTED_SETTINGS.max_corrections_per_cycle):
             report()
