@@ -26,12 +26,13 @@ class IntegrationSettings:
     """Relative distance between two returns that integration errors alone may cause, divided by the local
     tolerance."""
     min_count_of_distances_below_error: int = 3
-    """If this many successive distances lie below the distance that integration errors may cause, the
-    integration errors are smaller than assumed."""
+    """The integration errors are smaller than assumed if this many successive distances between returns are
+    below the distance that integration errors may cause (`return_error_over_tolerance`)."""
     max_ratio_due_to_integration_error: float = 3.0
-    """Successive distances that do not decrease are integration errors if they are at most this factor times
-    the distance that integration errors were assumed to cause: 2.0 was measured at an accuracy of 1e-2. The
-    local tolerance is then reduced by `successive_tolerance_ratio`."""
+    """Distances between returns that no longer decrease are integration errors if they are at most this
+    factor times the distance that integration errors were assumed to cause; 2.0 was measured at an accuracy
+    of 1e-2. The integration is then continued with a smaller local tolerance
+    (`successive_tolerance_ratio`)."""
     difference_safety_factor: float = 2.0
     """Safety factor: error estimate divided by the difference between the results of two integrations."""
     max_nearby_rod_error_over_accuracy: float = 0.5
@@ -39,9 +40,10 @@ class IntegrationSettings:
     this fraction of the accuracy; the rest of the accuracy is left for the error of integrating a nearby
     rod."""
     second_rod_limit_distance_ratio: float = 2.0
-    """A limiting rod is approximated by an integrated rod and, for the error estimate, by a second rod that
-    is farther from the limit by this factor. Cycles change in proportion to the distance from the limit, so
-    with the factor 2 the difference of the two cycles is the error of the nearer rod."""
+    """A limiting rod, such as a rod with k1 = inf, is replaced by a nearby rod, whose motion is integrated.
+    For the error estimate a second rod is integrated, farther from the limit by this factor. Cycles change in
+    proportion to the distance from the limit; with the factor 2 the difference of the two cycles is therefore
+    the error of the first."""
     max_local_tolerance_of_measured_run: float = 2e-8
     """Largest local tolerance of the integration from which the cycle is measured. With a larger tolerance,
     the time steps (20 per period at an accuracy of 1e-3) are too long for cubic interpolation: time

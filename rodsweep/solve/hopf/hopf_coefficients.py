@@ -41,9 +41,9 @@ class HopfCoefficientSettings:
     """Relative rounding error of c, divided by the condition number of the eigenvalue. Most rods have 1e-15;
     the largest measured value is 9e-15, for nearly crushed rods that are soft in stretch and shear."""
     max_landau_force_sensitivity: float = 20.0
-    """Bound on |dc/dF|/|c|, divided by |w''|/|w'| + 1/|F| + 1/|Fc - F|; primes: d/dF, Fc: crushing force. The
-    largest measured value is 10, for high modes of rods soft in shear; where a flutter window closes the
-    value is 1."""
+    """Bound on |dc/dF|/|c|, c: Landau coefficient, divided by |w''|/|w'| + 1/|F| + 1/|Fc - F|; w: eigenvalue,
+    primes: d/dF, Fc: crushing force. The largest measured value is 10, for high modes of rods soft in shear;
+    where a flutter window closes the value is 1."""
     relative_force_step: float = 1e-5
     """Force step of the difference quotient for the second derivative of w(F), divided by |F|."""
     max_cached_searches: int = 8
@@ -120,10 +120,10 @@ def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoeffic
 
 
 def _form_and_changes(rod: Rod, w: complex, accuracy: float) -> tuple[NormalForm, float, float]:
-    """Returns (normal form of the eigenvalue w on the last mesh, relative change of c from the mesh before,
-    relative change of dw/dF). The changes are those of the last two meshes with the same elements. accuracy:
-    the refinement ends when the relative change of c is at most this number, or at most the rounding error of
-    c."""
+    """Returns (normal form of the eigenvalue w on the last mesh, relative change of the Landau coefficient c,
+    relative change of dw/dF). Both changes are between the last two successive meshes with equal elements and
+    different orders; inf without such meshes. The refinement ends when the change of c is at most `accuracy`,
+    or at most the rounding error of c."""
     settings = HOPF_COEFFICIENT_SETTINGS
     # The worst-case factor of the mesh rule is not needed: here the second mesh measures the actual error.
     first_elements = elements_for_landau_coefficient(

@@ -46,7 +46,7 @@ class IntegratorSettings:
     """Period divided by the first time step in `relax_fast_components`; fast components decay within ten
     steps."""
     relaxation_shortening_if_stored: float = 100.0
-    """Divisor of relaxation time and first step of a stored motion; a divisor of 1 causes errors of 1e-5."""
+    """Value of `shortening` in `relax_fast_components` for a stored motion; 1 would cause errors of 1e-5."""
     relaxation_tolerance: float = 1e-3
     """Relative local error per time step in `relax_fast_components`."""
     max_pooled_integrators: int = 8

@@ -134,8 +134,7 @@ def largest_coefficients_over_states(values: Array, analysis: Array) -> Array:
 
 
 def smooth_space_and_time_tails(orbit: Orbit) -> Array:
-    """Tails in space and in time, (2,), each divided by the largest value of the field: the largest tail of
-    an element by `smooth_element_and_time_tails`, and the tail in time."""
+    """The largest of the tails in space and the tail in time, (2,), from `smooth_element_and_time_tails`."""
     tails = smooth_element_and_time_tails(orbit)
     return np.array([tails[:-1].max(), tails[-1]])
 

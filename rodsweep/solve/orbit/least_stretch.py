@@ -26,8 +26,8 @@ class LeastStretchSettings:
     """Tolerance of the position of the smallest stretch, in L. The error of the stretch is of second order in
     this tolerance."""
     safe_nodal_stretch: float = 0.2
-    """If h1 exceeds this number at all nodes, h1 is also positive between the nodes, where no search is then
-    made."""
+    """If h1 exceeds this number at all nodes, h1 is assumed to be positive between the nodes as well, and is
+    not computed there."""
     safe_sampled_stretch: float = 0.02
     """If h1 exceeds this number at all sampled positions, h1 is also positive between the positions, because
     a resolved polynomial varies by less than this number; no search is then made there."""

@@ -79,8 +79,9 @@ class Orbit:
 
     @property
     def states_equidistant_in_mesh_time(self) -> Array:
-        """States at the starts of all intervals except the last, (K - 1, n): these starts divide the mesh
-        time of the solved duration into K - 1 equal parts."""
+        """States at the starts of all intervals except the last, (K - 1, n). They are equidistant in the mesh
+        time, the variable that `grading` maps to the time, and divide the solved duration into K - 1
+        parts."""
         return self.states_at_interval_starts[:-1]
 
     @property
@@ -186,8 +187,9 @@ def _orbit_equations(
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
 def time_interval_lengths(interval_count: int, grading: TimeGrading = UNIFORM_TIME_GRADING) -> Array:
-    """Lengths of the time intervals as fractions of the solved duration, (intervals,). In the mesh time of
-    `grading` the last two intervals are half as long as the other intervals, which have equal lengths.
+    """Lengths of the time intervals as fractions of the solved duration, (intervals,). Without grading the
+    last two intervals are half as long as each of the others; `grading` distorts the times of all interval
+    ends.
 
     Because modes decay within an interval, the error at the end of an interval depends mainly on the length
     of this interval. The largest y is taken at the end of the last interval, which is therefore short.

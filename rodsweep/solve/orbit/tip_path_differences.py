@@ -9,7 +9,8 @@ from .measures import CycleMotion
 from .orbit import Orbit
 
 PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX = range(4)
-"""Indices into the array that `tip_path_differences` returns."""
+"""Indices of the period, the largest y, the worst extremum and the path in the result of
+`tip_path_differences`."""
 
 
 def tip_path_differences(coarse: CycleMotion, fine: CycleMotion) -> Array:
@@ -48,8 +49,8 @@ def max_relative_parameter_difference(first: Orbit, reference: Orbit) -> float:
 
 
 def _rod_parameter_coordinates(rod: Rod) -> Array:
-    """Coefficients of the equations of a uniform linear rod, or coordinates of all parameters of any other
-    rod, (n,)."""
+    """Parameters of a rod for comparison, (n,): the coefficients of its equations if it is uniform and
+    linear, for any other rod the coordinates of all parameters (1/k for a stiffness k)."""
     if rod.is_uniform_and_linear:
         return np.array([*rod.coefficients, rod.base_axial_drag])
     return np.array([rod.coordinate(name) for name in PARAMETERS])

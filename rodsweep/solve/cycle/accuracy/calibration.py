@@ -27,7 +27,7 @@ from .error_indicators import (
 from .settings import MESH_ERROR_CALIBRATION_SETTINGS
 
 ERROR_COUNT = 5
-"""Length of the error arrays: the errors of `tip_path_differences`, and the error of the multiplier."""
+"""Length of each row of `mesh_errors`: four errors of `tip_path_differences`, and the multiplier's error."""
 
 CHECKPOINT_FIELDS = dict(
     errors="mesh_errors",
@@ -53,17 +53,16 @@ class MeshErrorCalibration:
     time_convergence_order: Array
     """Order of convergence of the errors in time, (5,)."""
     coefficient_tails_and_orbit_size: Array
-    """Coefficient tails in space, of each element, and in time, and size of the measured orbit, (elements +
-    2,), from `error_indicators.coefficient_tails_and_orbit_size`."""
+    """Coefficient tail in space of each element, coefficient tail in time, and size of the measured orbit,
+    (elements + 2,), from `error_indicators.coefficient_tails_and_orbit_size`."""
     parameter_change_since_measurement: float
-    """Sum of the relative changes of the parameter since the measurement; inf if the errors no longer
-    apply."""
+    """Sum of the relative changes of the parameter since the measurement; inf if the errors do not apply."""
     error_indicators: Array = field(default_factory=lambda: np.full(3, inf))
     """`error_indicators` of the measured orbit, (3,); inf if unknown."""
     error_growth_since_measurement: Array = field(default_factory=lambda: np.ones(2))
     """Estimated growth factors of the errors in space and in time since the measurement, (2,)."""
     last_harmonics_change: float = 0.0
-    """Change, since the measurement, of the last harmonics of the tip's path (`error_indicators`)."""
+    """Increase of the tip path's last harmonics (third of `error_indicators`) since the measurement."""
 
     def arrays(self) -> dict[str, Array]:
         """All fields except growth factors and `last_harmonics_change` as named arrays, for a checkpoint."""
@@ -104,8 +103,8 @@ class MeshErrorCalibration:
         )
 
     def with_errors_scaled_on_branch(self, orbit: Orbit) -> "MeshErrorCalibration":
-        """This calibration with the errors scaled to a later orbit of a branch. The size of this orbit is
-        ignored: a branch is followed by arc length, and errors do not grow as orbits shrink."""
+        """This calibration with the errors scaled to a later orbit of a branch by the growth of the tails
+        alone: on a branch, errors are compared at equal arc length and do not grow as orbits shrink."""
         # The size of the earlier orbit replaces that of the later one, so that only the tails count.
         present_tails = coefficient_tails_and_orbit_size(orbit)
         present_tails[-1] = self.coefficient_tails_and_orbit_size[-1]
@@ -114,8 +113,8 @@ class MeshErrorCalibration:
 
     @property
     def with_outdated_errors(self) -> "MeshErrorCalibration":
-        """This calibration with an infinite `parameter_change_since_measurement`: its errors no longer apply,
-        its rates still do."""
+        """This calibration with `parameter_change_since_measurement` = inf: only its convergence rates are
+        valid."""
         return replace(self, parameter_change_since_measurement=inf)
 
     @property
@@ -136,14 +135,15 @@ class MeshErrorCalibration:
 
     @property
     def can_reuse_space_errors(self) -> bool:
-        """Whether a new measurement on the same mesh uses the scaled errors in space again: the errors still
-        apply, and the mesh has several elements. A mesh finer in space then has a higher order in every
-        element, and a comparison with it costs more than a comparison with a mesh finer in time."""
+        """Whether a new measurement on the same mesh reuses the scaled errors in space and measures only the
+        errors in time: the errors are valid, and the mesh has several elements. A finer mesh in space, with a
+        higher order in every element, is then expensive."""
         return self.mesh.element_count > 1 and self.is_valid
 
     @property
     def space_errors_scaled_to_orbit(self) -> Array:
-        """Errors in space, (5,), scaled to the orbit as `estimated_cycle_errors` scales them."""
+        """Errors in space, (5,), scaled to the orbit: those of period and largest y by the growth of the
+        errors in space, the other three by the larger of the growth factors in space and in time."""
         growth = np.full(ERROR_COUNT, self.error_growth_since_measurement.max())
         growth[:2] = self.error_growth_since_measurement[0]
         scaled: Array = self.mesh_errors[0] * growth
@@ -157,9 +157,9 @@ class MeshErrorCalibration:
         )
 
     def min_remeasured_errors(self, orbit: Orbit) -> Array:
-        """Lower limits, (2, 5), of the errors in space and in time that are measured again at `orbit` on this
-        mesh. These limits are fractions of the current errors, reduced as the coefficient tails have
-        decreased."""
+        """Lower limits, (2, 5), of the errors in space and in time newly measured at `orbit` on this mesh:
+        `min_remeasured_error_ratio` times the errors of this calibration, decreased with the squared
+        tails."""
         shrinkage = np.minimum(
             squared_tail_growth(
                 self.coefficient_tails_and_orbit_size, coefficient_tails_and_orbit_size(orbit)
@@ -172,10 +172,10 @@ class MeshErrorCalibration:
         return limits
 
     def estimated_cycle_errors(self, accuracy: float) -> CycleErrors:
-        """Error estimates of the orbit to which this calibration is scaled, not below a fraction of the
-        requested relative accuracy `accuracy`. For the multiplier and the other extrema, errors in space and
-        in time are scaled by the larger of the two growth factors, because an error was once seen to grow 2.7
-        times as much as its tail."""
+        """Error estimates of the orbit to which this calibration is scaled, each at least a fraction of the
+        relative accuracy `accuracy`. Errors of the multiplier and of extrema other than the largest y are
+        scaled by the larger of the two growth factors, because one was seen to grow 2.7 times as much as its
+        own tail."""
         growth = self.error_growth_since_measurement
         space_errors, time_errors = self.mesh_errors * growth[:, None]
         errors = errors_with_safety_factors(space_errors, time_errors, accuracy)
@@ -191,11 +191,11 @@ class MeshErrorCalibration:
 def mesh_error_calibration(
     mesh: OrbitMesh, errors: Array, orbit: Orbit, nearby: MeshErrorCalibration | None
 ) -> MeshErrorCalibration:
-    """Calibration of a mesh from its measured errors in space and in time, (2, 5), with convergence
-    rates. orbit: the measured orbit. nearby: calibration at a nearby orbit, on any mesh. If the mesh of
-    `nearby` has the same elements but another order, the errors on both meshes give the rate in space; if the
-    number of intervals differs, the order in time. Otherwise the rates of `nearby` are kept. If `nearby` is
-    None, the rates are estimated from the orbit's coefficients and the number of stages."""
+    """Calibration of a mesh from its errors measured at `orbit`, in space and in time, (2, 5), with
+    convergence rates. nearby: calibration at a nearby orbit, on any mesh. If the two meshes have the same
+    elements of different order, their errors give the rate in space; if they have different numbers of
+    intervals, the order in time. Otherwise the rates of `nearby` are kept. If `nearby` is None, the rates are
+    estimated from the orbit's coefficients and the number of stages."""
     tails = coefficient_tails_and_orbit_size(orbit)
     if nearby is None:
         decay = (
@@ -219,7 +219,7 @@ def mesh_error_calibration(
 
 
 def _limited_log_space_error_decay(decay: Array) -> Array:
-    """Decreases `decay` of ln(error) per order, (5,), limited to the allowed range."""
+    """The rates `decay`, (5,), the decrease of ln(error) per order, clipped to their allowed range."""
     settings = MESH_ERROR_CALIBRATION_SETTINGS
     limited_decay: Array = np.clip(
         decay, settings.min_log_space_error_decay_per_order, settings.max_log_space_error_decay_per_order

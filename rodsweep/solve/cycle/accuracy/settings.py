@@ -11,35 +11,37 @@ class MeshErrorCalibrationSettings:
     error_safety_factor: float = 3.0
     """Safety factor on measured errors of period, extrema and multiplier."""
     min_largest_y_error_over_path_distance: float = 0.16
-    """Lower limit of the error estimate of the largest y, divided by the distance between the tip's paths on
-    two meshes with different elements: a single number may agree on two meshes by coincidence, a path does
+    """Lower limit of the error estimate of the largest y, divided by the largest distance between the tip's
+    paths on two meshes with different elements: two values of y may agree by coincidence, two paths do
     not."""
     min_period_error_over_path_distance: float = 0.16
-    """Lower limit of the error estimate of the period, divided by the distance between the tip's paths on two
-    meshes with different elements."""
+    """Lower limit of the error estimate of the period, divided by the largest distance between the tip's
+    paths on two meshes with different elements."""
     min_extrema_error_over_path_distance: float = 1.6
-    """Lower limit of the error estimate of the other extrema, divided by the sum of the distances between the
-    tip's paths for different elements and for different time intervals."""
+    """Lower limit of the error estimate of the tip's extrema other than the largest y, divided by the sum of
+    two distances between the tip's paths: for different elements, and for different time intervals."""
     min_error_over_tip_path_distance: float = 0.004
     """This factor times the distance between the tip's paths for different time intervals is added to the
     lower limits of the error estimates of period and largest y. The distance is largest in theta, whose
     errors matter least."""
     extrema_error_per_last_harmonics: float = 10.0
-    """Increase of the error estimate of the other extrema along a chain, divided by the increase of the last
-    harmonics of the tip's path: a bound of the sum of all harmonics that are cut off, the next three being
-    the largest. Without this increase the error of a cycle was 1.25 times its estimate
-    (`test_errors_of_extrema_grow_with_the_last_harmonics`), and in 140 random chains at most half."""
+    """Increase of the error estimate of the tip's extrema other than the largest y along a chain, divided by
+    the increase of the last three harmonics of the tip's path. The factor bounds the sum of all harmonics
+    that are cut off, of which the next three are the largest. Without this increase the error of a cycle was
+    1.25 times its estimate (`test_errors_of_extrema_grow_with_the_last_harmonics`), and in 140 random chains
+    at most half."""
     min_error_per_larger_error: float = 2.0
     """Lower limit of the error estimates of period and of largest y, divided by the larger of the two
     measured errors. The two errors decrease as the squares of the tails, and rarely change sign near the same
     mesh. Without this limit, the error of one cycle in a thousand exceeded its estimate, by a factor of up to
     4.5."""
     planned_error_per_accuracy: float = 0.5
-    """A mesh is planned for predicted errors of period and largest y of at most this fraction of the
+    """A mesh is planned so that the predicted errors of period and largest y are at most this fraction of the
     accuracy."""
     planned_extrema_error_over_tolerance: float = 0.75
-    """A mesh is planned for a predicted error of the other extrema of at most this fraction of their
-    tolerance. This error changes less along a chain: it contains the distance between the tip's paths."""
+    """A mesh is planned so that the predicted error of the tip's extrema other than the largest y is at most
+    this fraction of its tolerance. The fraction is larger than for period and largest y, because this error
+    changes less along a chain: it contains the distance between the tip's paths."""
     error_to_coefficient_decay_ratio: float = 1.6
     """Assumed decrease of ln(error) in space per order, divided by the decrease of ln(coefficient) per order.
     The errors are proportional to squared coefficients; ratios from 1.4 to 2 were measured."""
@@ -50,11 +52,12 @@ class MeshErrorCalibrationSettings:
     time_order_per_stage: float = 1.5
     """Order of convergence in time divided by the number of stages, assumed if no order was measured."""
     max_time_order_per_smallest_order: float = 2.0
-    """Upper limit of a measured order of convergence in time, divided by the smallest order, stages + 1."""
+    """Upper limit of a measured order of convergence in time, divided by stages + 1, the order for stiff
+    problems."""
     max_element_order_decrease: int = 3
     """Largest decrease of the order of the elements from the current mesh to a planned mesh."""
     min_planned_over_current_intervals: float = 0.6
-    """Lower limit of the ratio of the numbers of time intervals, planned mesh to current mesh."""
+    """Smallest number of time intervals of a planned mesh, divided by that of the current mesh."""
     max_element_order_increase: int = 12
     """Largest increase of the order of the elements from the current mesh to a planned mesh; the convergence
     rates are not known for finer meshes."""
@@ -70,13 +73,14 @@ class MeshErrorCalibrationSettings:
     number. Near the Hopf point where the cycles end, the error of the largest y may change sign and then grow
     fast."""
     min_remeasured_error_ratio: float = 0.5
-    """Lower limit of an error that is measured again on the same mesh, divided by the previous error scaled
-    with the tails. Near a change of sign, an error is small at one cycle, and three cycles later as large as
-    before."""
+    """Lower limit of an error that is newly measured on the same mesh, divided by the previous error scaled
+    with the tails. An error that changes its sign along a chain is small at one cycle, and three cycles later
+    as large as before."""
     min_tail_over_largest_element_tail: float = 1e-3
-    """Lower limit of the tail of an element by which errors are scaled, divided by the largest tail of all
-    elements. Of two elements, the one with a tail of 0.07 times the largest determined the errors, which grew
-    four times as much as the square of the largest tail."""
+    """Errors are scaled with the coefficient tail of each element, or with this fraction of the largest tail
+    of all elements if the tail is smaller. A smaller element may determine the errors: in a mesh of two
+    elements, the one with 0.07 times the largest tail did, and the errors grew four times as much as the
+    squared largest tail."""
     min_coefficient_tail: float = 1e-15
     """Lower limit of the coefficient tails by which errors are scaled; smaller tails are rounding errors."""
 
@@ -115,8 +119,8 @@ class RefinementSettings:
     """Relative tolerance of Newton's method for the nearby orbit whose coefficient tails determine the first
     mesh."""
     accuracy_factor_after_mesh_without_cycle: float = 1e-3
-    """If a mesh is so coarse that the rod has no cycle on this mesh, the next mesh is chosen for the accuracy
-    times this factor."""
+    """If a mesh is so coarse that Newton's method finds no cycle on it, the next mesh is chosen for the
+    requested accuracy times this factor."""
     max_mesh_cost_after_mesh_without_cycle: float = 1e8
     """After a mesh without a cycle, a finer mesh is tried only if (number of time intervals) (number of
     unknowns)^3 of this mesh is at most this number. Cycles near a Hopf point need fewer than 20 intervals and
@@ -135,14 +139,14 @@ class RefinementSettings:
     """Predicted errors are always accepted if the relative distance of a cycle from its prediction is at most
     this number: rounding errors may cause such a distance."""
     min_solved_to_start_size_ratio: float = 0.2
-    """Smallest size of a solved orbit divided by the size of Newton's start; a smaller orbit is a different
-    motion."""
+    """Smallest ratio of the size of a solved orbit to the size of the orbit from which Newton's method
+    started, sizes in the energy norm; a smaller orbit is a different motion."""
     max_solved_to_start_size_ratio: float = 5.0
-    """Largest size of a solved orbit divided by the size of Newton's start; a larger orbit is a different
-    motion."""
+    """Largest ratio of the size of a solved orbit to the size of the orbit from which Newton's method
+    started; a larger orbit is a different motion."""
     max_error_increase_on_finer_mesh: float = 10.0
-    """Refinement ends if the error estimate increases by more than this factor on a finer mesh; a smaller
-    increase may be a coincidence."""
+    """Refinement ends if the error estimate increases by more than this factor from a mesh to a finer mesh;
+    a smaller increase may be a coincidence."""
     max_meshes_per_cycle: int = 8
     """Maximum number of meshes tried for one cycle."""
 

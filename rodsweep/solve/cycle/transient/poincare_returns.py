@@ -144,13 +144,13 @@ def _hermite_weights(x: float) -> tuple[float, float, float, float]:
 
 
 def returns_per_period_and_distance(moments: Sequence[Array]) -> tuple[int, float]:
-    """Returns (m, distance). m: number of returns per period, the smallest number with a nearly minimal
-    distance. distance: relative distance between the last return and the m-th return before it. (1, inf) if
-    the last moments are rounding errors.
+    """Returns (m, distance). m: number of returns per period: the smallest number for which the distance is
+    nearly minimal. distance: relative distance between the last return and the m-th return before it. The
+    result is (1, inf) if the moments at the last return are rounding errors.
 
-    moments: bending moments at successive returns of the tip, (nodes,) each. Only bending moments are
-    compared, because the interpolation between time steps has errors in the stiff components, 1e-2 at k1 =
-    1e7.
+    moments: bending moments at successive returns of the tip, (nodes,) each, the last return last. Only
+    bending moments are compared, because the interpolation between time steps has errors in the stiff
+    components, 1e-2 at k1 = 1e7.
     """
     size = np.linalg.norm(moments[-1])
     if (
@@ -229,5 +229,6 @@ def return_count_of_compared_run(left: int) -> int:
 
 
 def _return_count_of_run(usual: int, left: int, least: int) -> int:
-    """`usual`, or all returns `left` if fewer than `least` would be left for a further run."""
+    """Number of returns of the next run: `usual`, or all `left` returns up to the maximum if fewer than
+    `least` of them would be left for the run after it."""
     return usual if left - usual >= least else left

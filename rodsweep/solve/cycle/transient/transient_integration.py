@@ -48,9 +48,9 @@ from .transient_settings import TRANSIENT_SETTINGS
 class TransientIntegration:
     """Integration of the motion of one rod from a start; `integrate_to_outcome` is called only once. form:
     the rod whose cycle is solved for, and the mesh. straight: stability of the straight rod. parameter_name,
-    unstable_cycle: see `CycleSearch`. system: the integrated rod; if the rod of `form` is a limiting rod (k1
-    = inf, ...), a nearby rod. record: record of the tip's path or of shapes, or None. returns, steps,
-    jump_count: numbers of returns, time steps and jumps so far."""
+    unstable_cycle: see `CycleSearch`. system: the integrated rod; a nearby rod if the rod of `form` has k1 =
+    inf, k2 = inf or gamma3 = 0. record: the stored tip's path or shapes; None if not requested. returns,
+    steps, jump_count: numbers of returns, time steps and jumps so far."""
 
     def __init__(
         self,
@@ -144,8 +144,8 @@ class TransientIntegration:
         return self._outcome(*cycle.status_and_message(self.search.accuracy), cycle), z
 
     def _cycle_approached_slowly(self, z: Array) -> RefinedCycle | None:
-        """The stable cycle that a slow motion, now at the state z, (unknowns,), approaches; None if there is
-        none."""
+        """The stable cycle that a motion with slowly changing amplitude approaches, predicted from its last
+        returns and solved by Newton's method; None if there is none. z: current state, (unknowns,)."""
         factor = self.amplitude_equation.scaling_factor_to_slow_limit(self.past_returns)
         if factor is None or self.record or self.unsolved_message:
             return None
@@ -167,8 +167,8 @@ class TransientIntegration:
         self.elapsed_time += run.times[-1]
 
     def _state_after_jump(self, z: Array) -> Array:
-        """The state, (unknowns,), after a jump to the state z, (unknowns,), and the decay of its fast
-        components. The earlier returns are discarded."""
+        """Makes a jump of the motion to the state z, (unknowns,), and discards the earlier returns; returns
+        the state after the decay of the fast components of z."""
         self.jump_count += 1
         self.past_returns.clear()
         return relax_fast_components(self.system, z, self.leading_mode.period)
