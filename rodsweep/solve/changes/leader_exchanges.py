@@ -43,33 +43,35 @@ class LeaderExchangeSettings:
     eigenvalue_accuracy: float = 1e-6
     """Relative accuracy of the eigenvalues at a sample, before the refinement by Newton's method on D."""
     close_sample_path_fraction: float = 2e-4
-    """Two samples are close if their distance, as a fraction of the path's length, is at most this number.
-    Between close samples, `excludes_exchange` too may exclude an exchange."""
+    """Two samples are close if their distance is at most this fraction of the path's length. Only between
+    close samples may the slopes of the eigenvalues exclude an exchange (`excludes_exchange`)."""
     min_interval_fraction: float = 1e-8
     """A sample is added between two samples only if their distance, as a fraction of the path's length,
     exceeds this number. Three real eigenvalues of cones meet within 4e-7 of the path."""
     max_samples_without_spacing_limit: int = 1000
-    """With more samples than this number, a sample is added only between samples farther apart than
-    `close_sample_path_fraction`."""
+    """If the search has more samples than this number, a sample is added between two samples only if they are
+    not close, see `close_sample_path_fraction`."""
     sample_offset_interval_fraction: float = 1e-3
-    """Where further exchanges may lie between two samples, samples are added on both sides of the exchange
-    found, at this fraction of the interval."""
+    """If further exchanges may lie between two samples, a sample is added on either side of the exchange
+    found, at a distance of this fraction of the distance between the two samples."""
     min_interval_fraction_with_two_exchanges: float = 1e-9
     """This number replaces `min_interval_fraction` if the interpolation does not exclude two exchanges
     between the samples."""
     min_subinterval_fraction: float = 0.05
-    """An added sample divides its interval into parts that are at least this fraction of the interval: a
-    minimum of the interpolant may coincide with a sample."""
+    """Smallest distance of an added sample from the two samples between which it lies, divided by their
+    distance. A minimum of the interpolant, at which a sample is added, may coincide with one of the two
+    samples."""
     max_newton_displacement_in_errors: float = 10.0
     """The eigenvalue w found by Newton's method is rejected as a different eigenvalue if its distance from
     the start exceeds both this multiple of the start's error estimate and `max_relative_newton_displacement`
-    times |w|, or if the start of another eigenvalue is nearer."""
+    times |w|, or if another eigenvalue of the sample is nearer to w than the start is."""
     max_relative_newton_displacement: float = 1e-12
     """The eigenvalue w found by Newton's method is not rejected for a distance from the start of at most this
     multiple of |w|: some thousand rounding errors."""
     min_relative_interval_length: float = 1e-12
-    """The search fails at an interval whose length, divided by the larger modulus of its ends, is at most
-    this number (some thousand rounding errors), if its exchange is not found."""
+    """If no exchange is found between two samples with a real and a complex leading eigenvalue, the search
+    fails once the interval is at most this fraction of the larger |p| of the two: some thousand rounding
+    errors."""
 
 
 LEADER_EXCHANGE_SETTINGS = LeaderExchangeSettings()
@@ -131,9 +133,9 @@ class LeaderExchangeSearch:
         return exchanges, intervals.end
 
     def _search_interval(self, a: float, b: float, intervals: IntervalQueue) -> list[Threshold]:
-        """The exchange between the samples at a and b, in a list; an empty list without an exchange, or if
-        the test is undecided. An undecided interval is divided into two entries of `intervals`; if it is too
-        short, the list counts as not proved. Raises Unsolvable."""
+        """The exchange between the samples at a and b, in a list; an empty list if there is none, or if the
+        test is undecided. An undecided interval is divided into two entries of `intervals`; if it is too
+        short for that, `leading_eigenvalues_proved` becomes False. Raises Unsolvable."""
         left_sample = self.sample_at(a)
         right_sample = self.sample_at(b)
         fraction = 0.5
@@ -171,10 +173,10 @@ class LeaderExchangeSearch:
     def _exchange_if_alone(
         self, exchange: Threshold, left: SpectrumSample, right: SpectrumSample, intervals: IntervalQueue
     ) -> list[Threshold]:
-        """The exchange `exchange` between the samples `left` and `right`, in a list, if no further exchange
-        lies between them; otherwise an empty list, and the interval is divided on both sides of the exchange,
-        into entries of `intervals`. If the interval is too short, the exchange is returned, and the list
-        counts as not proved."""
+        """A list with the exchange `exchange` between the samples `left` and `right`, if no further exchange
+        lies between them. Otherwise an empty list, and the interval is divided on both sides of the exchange
+        into entries of `intervals`; if it is too short for that, the list contains the exchange, and
+        `leading_eigenvalues_proved` becomes False."""
         excludes_others = has_only_double_eigenvalue if exchange.frequency == 0 else has_only_leader_exchange
         if excludes_others(left, right):
             return [exchange]
@@ -189,9 +191,9 @@ class LeaderExchangeSearch:
         return []
 
     def _exchange_between(self, left: SpectrumSample, right: SpectrumSample) -> Threshold | None:
-        """The exchange between the samples `left` and `right`, of which one has a leading pair and one a real
-        leading eigenvalue. None if Newton's method finds no exchange, or if a count shows that other
-        eigenvalues lead there."""
+        """The exchange between the samples `left` and `right`, one with a leading pair and one with a real
+        leading eigenvalue. None if Newton's method finds no exchange, or if a count shows that eigenvalues
+        with larger real parts exist at the point found."""
         pair_sample, real_sample = (left, right) if left.oscillates else (right, left)
         # Kinds are named in the direction of the parameter, along a stiffness the direction of falling p.
         if right.oscillates != self.path.is_compliance_path:

@@ -46,7 +46,8 @@ class ThresholdKind(IntEnum):
 
     @property
     def pair_leads_after(self) -> bool:
-        """Whether a complex pair takes the lead at this threshold."""
+        """Whether a real leading eigenvalue gives way to a complex pair at this threshold (onset or
+        pair_leads)."""
         return self in (ThresholdKind.onset, ThresholdKind.pair_leads)
 
 

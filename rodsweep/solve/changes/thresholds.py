@@ -70,9 +70,9 @@ def empty_thresholds(status: ThresholdStatus, end: float, message: str = "") -> 
 def thresholds_with_status(
     name: str, result: ThresholdSearchResult, accuracy: float, certify: bool, max_thresholds: int
 ) -> Thresholds:
-    """The result of a search along the parameter `name` with its status: the most serious problem, or ok.
-    accuracy: requested relative accuracy. certify: whether a proof is requested. max_thresholds: maximum
-    number of thresholds in the list."""
+    """The result of a search along the parameter `name`, with its status: the most serious problem of the
+    search, or ok. accuracy: requested relative accuracy. certify: whether a proof of completeness is
+    requested. max_thresholds: maximum number of thresholds in the stored list."""
     status = ThresholdStatus.ok
     accuracy_text = missed_accuracy_text(name, result.thresholds[:max_thresholds], accuracy)
     # A part of the range that was not searched hides more than any other doubt, so it comes first.

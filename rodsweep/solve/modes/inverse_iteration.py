@@ -108,8 +108,8 @@ def _evaluated_modes(
 
 
 def largest_relative_change(fields: Complex, reference: Complex) -> Array:
-    """Largest change of a field between two results, `ModeVectors.fields`, divided by the largest value of
-    the field in `reference`, (modes,)."""
+    """Largest change of a field from `reference` to `fields`, both as `ModeVectors.fields`, divided by the
+    largest modulus of this field in `reference`; for each mode, (modes,)."""
     field_size = np.abs(reference).max(axis=2)
     field_change = np.abs(fields - reference).max(axis=2)
     relative_change = np.divide(field_change, field_size, out=field_change.copy(), where=field_size > 0)
@@ -137,9 +137,10 @@ def nan_mode_vectors(resolution: Resolution, mode_count: int, point_count: int) 
 def _eigenvectors(
     form: DenseEigenproblem, eigenvalues: Complex, estimates_rounding: bool
 ) -> tuple[Complex, Array]:
-    """Returns (right and left eigenvectors, rms rounding errors): (2, unknowns, modes) and (2, modes), the
-    larger relative error of the tip displacements, and the relative error of the condition number. If
-    `estimates_rounding`, the eigenvectors are followed by perturbed ones, (2, unknowns, 2 modes)."""
+    """Returns (vectors, errors). vectors: right and left eigenvectors, (2, unknowns, modes); if
+    `estimates_rounding`, followed by the same eigenvectors perturbed by rounding errors, (2, unknowns, 2
+    modes) together. errors: rms relative rounding errors of the tip displacement (the larger one of right and
+    left) and of the condition number, (2, modes); NaN without the estimate."""
     settings = MODE_ITERATION_SETTINGS
     A = form.A
     B = form.B

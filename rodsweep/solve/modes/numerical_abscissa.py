@@ -24,14 +24,15 @@ class NumericalAbscissaSettings:
     """Maximum number of shifts; a shift below the numerical abscissa is followed by a shift about twice as
     large."""
     relative_shift_distance_above_abscissa: float = 0.05
-    """Distance of the next shift above the current estimate a of the numerical abscissa, divided by 1 + |a|:
-    so small that shift + 1/eigenvalue loses no digits by cancellation. An estimate is final if its shift was
-    at most twice this distance above it."""
+    """The next shift lies above the current estimate a of the numerical abscissa by this number times (1 +
+    |a|), so close that shift + 1/eigenvalue loses no digits by cancellation. An estimate is final if its own
+    shift was at most twice this distance above it."""
     min_positive_over_negative_modulus: float = 1e-9
     """The largest eigenvalue of the shifted inverse is positive, and not a rounding error, if it exceeds this
     fraction of the modulus of the most negative eigenvalue."""
     rounding_safety_factor: float = 3.0
-    """Rounding error of the abscissa, divided by its rms estimate; measured: at most 1.2."""
+    """Factor from the rms estimate of the rounding error of the abscissa to the stated error; the true error
+    was at most 1.2 times the estimate."""
 
 
 NUMERICAL_ABSCISSA_SETTINGS = NumericalAbscissaSettings()

@@ -58,8 +58,9 @@ class Propagator:
     modes.
 
     w: finite eigenvalues of the mesh, by descending real part. right, left: right and left eigenvectors of G
-    as columns. generator, overlap: L_k and Z^T Q of `use_leading_modes`, (k, k); (0, 0) before its first
-    call. Eigenvalues that the mesh does not resolve are not eigenvalues of the rod, but together they
+    as columns. generator: L_k, the restriction of L to the k leading modes; overlap: Z^T Q, products of the
+    left and right bases Z and Q (see `use_leading_modes`); (k, k) each, (0, 0) before the first call of that
+    method. Eigenvalues that the mesh does not resolve are not eigenvalues of the rod, but together they
     represent the remaining spectrum.
     """
 
@@ -104,7 +105,8 @@ class Propagator:
         return k
 
     def propagators_at(self, times: Array) -> Array:
-        """The matrix exp(L_k t) (Z^T Q)^-1, of norm |exp(L t) P_k|, at each of `times`: (times, k, k)."""
+        """The matrix exp(L_k t) (Z^T Q)^-1 at each t of `times`, in tau2: (times, k, k). L_k, Z, Q: see
+        `use_leading_modes`. The 2-norm of the matrix is the norm of exp(L t) P_k."""
         return matrix_exponential(self.generator * times[:, None, None]) @ np.linalg.inv(self.overlap)
 
     def norm_and_log_slope(self, time: float) -> tuple[float, float]:
@@ -114,8 +116,9 @@ class Propagator:
         return float(singular_values[0]), float(u[:, 0] @ self.generator @ u[:, 0])
 
     def squared_norms_and_curvature_bounds(self, times: Array) -> tuple[Array, Array]:
-        """Returns (N^2, c), (times,) each, at each of `times`, in tau2. N = |exp(L t)|. c bounds a curvature:
-        f'' >= -c for f = |exp(L t) v|^2 with any |v| = 1."""
+        """Returns (N^2, c), (times,) each, for each time t of `times`, in tau2. N = |exp(L t)|. c >= 0 bounds
+        the curvature of growth curves from below: f''(t) >= -c for f(t) = |exp(L t) v|^2 and every v with |v|
+        = 1."""
         E = self.propagators_at(times)
         rate_of_E = self.generator @ E
         half_second_derivative = (
@@ -127,8 +130,8 @@ class Propagator:
         )
 
     def norm_of_truncated_modes(self, m: int, time: float) -> float:
-        """Norm |exp(L t) (P_k - P_m)| of the modes m + 1 to k at `time`, in tau2, k: number of leading modes
-        in use; m < k must not split a complex pair."""
+        """Norm |exp(L t) (P_k - P_m)| at the time t = `time`, in tau2: the contribution of the modes m + 1 to
+        k, k: number of leading modes in use. m < k must not split a complex pair."""
         E = self.propagators_at(np.array([time]))[0]
         E[:m, :m] -= matrix_exponential(self.generator[:m, :m] * time) @ np.linalg.inv(self.overlap[:m, :m])
         return float(np.linalg.norm(E, 2))

@@ -61,16 +61,16 @@ class SpectrumSearch:
         self.best: CheckedCandidates | None = None
         self.stalled_refinements = self.failure_count = 0
         self.incomplete: Candidates | None = None
-        """The last candidates that lack eigenvalues; later candidates are united with them."""
+        """Last roots of D that were too few for request or count; later roots are united with them."""
         self.disagreement: Comparison | None = None
-        """The comparison of the last count that disagrees with the eigenvalues found."""
+        """Last comparison in which the count differs from the number of eigenvalues found."""
         self.is_leader_unresolved = False
-        """Whether on one of the meshes neither the eigenvalues nor a count showed which eigenvalue leads."""
+        """Whether on one of the meshes neither roots of D nor a count showed which eigenvalue leads."""
         self.last_failure = ""
         """Error message of SLEPc or LAPACK on the last mesh; empty if the last mesh was solved."""
 
     def find_spectrum(self) -> Spectrum:
-        """The spectrum, from solves on meshes until the candidates are accepted or no longer improve."""
+        """The spectrum; solves on finer meshes end if roots and count agree, or no longer improve."""
         for solve_index in range(SEARCH_SETTINGS.max_meshes):
             is_too_fine = self.mesh.unknown_count > RESOLUTION_SETTINGS.max_unknowns
             if is_too_fine or self.failure_count > SEARCH_SETTINGS.max_failed_solves:
@@ -92,7 +92,7 @@ class SpectrumSearch:
         return self.best_spectrum()
 
     def check_candidates(self, candidates: Candidates) -> CheckedCandidates | None:
-        """The candidates with their count and error; None if more eigenvalues or a finer mesh are needed."""
+        """The roots of D in `candidates` with count and error; None if another solve is needed instead."""
         if self.incomplete is not None:
             candidates = candidates.united_with(self.incomplete)
         if len(candidates.roots.w) < self.modes:
@@ -124,8 +124,8 @@ class SpectrumSearch:
         return CheckedCandidates(candidates, comparison, self.error_over_limit(candidates, comparison))
 
     def error_over_limit(self, candidates: Candidates, comparison: Comparison | None) -> float:
-        """The largest ratio of an error of the candidates to the allowed error. Eigenvectors, and eigenvalues
-        without a proof, also need a mesh whose eigenvalues are close to the roots of D."""
+        """Largest ratio of an error of `candidates` to the allowed error. With eigenvectors, or without a
+        proof by a count, the distance of the mesh's eigenvalues from the roots of D is an error, too."""
         ratio = candidates.max_relative_error(self.modes) / self.request.accuracy
         if comparison is not None and comparison.agrees and not self.needs_vectors:
             return ratio
@@ -153,17 +153,17 @@ class SpectrumSearch:
         self.request_eigenvalues(requested_count)
 
     def count_needs_decaying_modes(self, candidates: Candidates) -> bool:
-        """Whether a slow count needs eigenvalues with Re w <= 0 too, because all modes in `candidates` grow.
-        False if no count can succeed and `SEARCH_SETTINGS.max_modes_found_without_proof` modes are found."""
+        """Whether the count of an arm needs eigenvalues with Re w <= 0 too: all roots found have Re w > 0.
+        False if `max_modes_found_without_proof` roots are found and no count can succeed."""
         if not (self.request.certify and self.problem.is_count_slow and (candidates.roots.w.real > 0).all()):
             return False
         count = len(candidates.roots.w)
         return count < SEARCH_SETTINGS.max_modes_found_without_proof or self.problem.is_countable
 
     def request_decaying_modes(self, candidates: Candidates) -> None:
-        """Requests eigenvalues left of `candidates`, which all grow, because a count also needs decaying
-        modes. If `can_unite`, moves the shift to the left; otherwise, or if the last shift or mesh gave no
-        further eigenvalue, requests more of them. Refines the mesh if fewer were found than requested."""
+        """Requests eigenvalues left of `candidates`, which all grow, because a count needs decaying modes
+        too. If `can_unite`, moves the shift to the left; otherwise, or if the last solve gave no further
+        eigenvalue, requests a larger number. Refines the mesh if fewer were found than requested."""
         self.is_leader_unresolved = True
         found_count = len(candidates.roots.w)
         if found_count < self.requested_count:
@@ -186,7 +186,7 @@ class SpectrumSearch:
         self.requested_count = requested_count
 
     def update_best(self, checked: CheckedCandidates) -> None:
-        """Stores the candidates if they are the best so far; counts successive solves without progress."""
+        """Stores the candidates if they are the best so far; counts solves without progress."""
         best = self.best
         progress_limit = SEARCH_SETTINGS.max_progress_error_ratio * best.error_over_limit if best else 0.0
         is_better = best is None or checked.sort_key < (best.sort_key[0], progress_limit)
@@ -218,7 +218,7 @@ class SpectrumSearch:
 
 
 def _best_spectrum(best: CheckedCandidates, problem: TransverseProblem, request: SpectrumRequest) -> Spectrum:
-    """The spectrum of the best candidates, with its status and whether it is proved complete."""
+    """The spectrum with the best roots of D found, with its status and whether it is proved complete."""
     roots, comparison = best.candidates.roots, best.comparison
     error_over_limit = best.error_over_limit
     if request.certify and not request.vector_node_count:  # the mesh is not accurate, but the roots of D are

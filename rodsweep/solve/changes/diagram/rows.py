@@ -23,11 +23,11 @@ from .solvable_part import thresholds_of_solvable_part
 
 
 class StabilityClass(IntEnum):
-    """Evolution of a small deflection of the straight rod.
+    """Behaviour of a small deflection of the straight rod.
 
     monotone, oscillatory: stable; the slowest mode decays without or with oscillations. flutter: at least one
-    mode grows. undecided: within the error of a boundary, or unknown. crushed: F is at least the force that
-    crushes the weakest section, k1 for a uniform rod of linear material.
+    mode grows. undecided: within the error of a threshold, or unknown. crushed: F is at least the crushing
+    force of the rod, which is k1 for a uniform rod of linear material.
     """
 
     monotone = 0
@@ -53,14 +53,15 @@ class RowRequest:
     cycle_accuracy: float = 1e-6
     """Relative accuracy of the period and of the largest tip y of each cycle, if cycles are requested."""
     max_special_points: int = 0
-    """Maximum number of stored special points of the branches of cycles, if cycles are requested."""
+    """Maximum number of special points of branches of cycles that are stored for a row, if cycles are
+    requested."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiagramRow:
-    """One row: class (`StabilityClass`) and number of unstable modes at each value, (values,), and all
-    thresholds along the row. unstable_count: -1 where unknown or crushed. seconds: computing time of the row,
-    in s."""
+    """Result for one row of a phase diagram, whose rods differ in one parameter only: stability class and
+    number of unstable modes at each value of this parameter, (values,) each, and all thresholds along the
+    row. unstable_count: -1 where unknown or crushed. seconds: computing time of the row, in s."""
 
     stability_class: NDArray[np.int8]
     """Value of `StabilityClass` at each value of the row's parameter, (values,)."""
@@ -96,8 +97,9 @@ def crushed_row(values: Array) -> DiagramRow:
 
 
 def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
-    """The row of `request`, searched over the values at which the rod is not crushed and, along F or k1, on
-    to the crushing force; a row of crushed rods is not searched."""
+    """The row of `request`, searched for thresholds between the first and the last value at which the rod is
+    not crushed; along F or k1 up to the value at which the force crushes the rod. A row of crushed rods only
+    is not searched."""
     name = request.parameter_name
     values = request.parameter_values
     F = values if name == "F" else np.full(len(values), rod.F)
@@ -156,9 +158,10 @@ def _row_of_one_class(
 def classes_and_unstable_counts(
     result: ThresholdSearchResult, values: Array
 ) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
-    """Returns (class, number of unstable modes) at each value of the path's parameter, (values,) each, from
-    the thresholds `result`. The class is undecided and the number is -1 within the error of a threshold, in
-    the open range, outside the searched part of the range, and where the number is unknown."""
+    """Returns (class, number of unstable modes) at each of the parameter values `values`, (values,) each,
+    from the thresholds in `result`. The class is undecided and the number is -1 within the error of a
+    threshold, within `range_of_further_crossings`, outside the searched interval, and where the number is
+    unknown."""
     oscillates = np.full(len(values), result.oscillates_at_start)
     unstable_counts = np.full(len(values), result.unstable_at_start, dtype=np.int32)
     is_undecided = np.zeros(len(values), dtype=bool)

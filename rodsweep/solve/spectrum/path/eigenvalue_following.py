@@ -31,7 +31,8 @@ class EigenvalueFollowingSettings(KernelConstants):
     max_newton_steps: int = 8
     """Maximum number of Newton steps for one eigenvalue."""
     accuracy_beyond_leading_modes: float = 1e-9
-    """Relative accuracy of eigenvalues beyond the leading modes, used only to place the line of a count."""
+    """Relative accuracy of eigenvalues beyond the leading modes. They are used only to choose the vertical
+    line to the right of which eigenvalues are counted."""
     D_curvature_safety_factor: float = 4.0
     """Safety factor on |D''/(2 D')|: the modulus of the sum of 1/(w - w_j) over all other roots w_j,
     estimated from the followed roots alone."""
@@ -96,9 +97,10 @@ def eigenvalue_crowding_estimate(w: Complex, k: int) -> float:
 
 @compiled
 def converged_error(step: CorrectedEigenvalue, crowding: float, exact: bool) -> float:
-    """Absolute error of an eigenvalue after a Newton step; inf until the remainder crowding step^2 is small
-    enough. crowding: upper estimate of |D''/(2 D')| at the eigenvalue. exact: whether the remainder must be
-    below the rounding error, instead of `EIGENVALUE_FOLLOWING_SETTINGS.accuracy_beyond_leading_modes` |w|."""
+    """Absolute error of an eigenvalue after a Newton step; inf if the step was too large for the error to be
+    known. crowding: upper estimate of |D''/(2 D')| at the eigenvalue; the error is crowding times the squared
+    step. exact: whether this error must be below the rounding error, instead of
+    `EIGENVALUE_FOLLOWING_SETTINGS.accuracy_beyond_leading_modes` |w|."""
     remainder = crowding * step.step_length * step.step_length
     allowed = (
         max(step.rounding_error, MACHINE_EPSILON * abs(step.w))
@@ -165,8 +167,9 @@ def _iterate_to_convergence(
 @compiled
 def are_distinct_roots(w: Complex, error: Array) -> bool:
     """Whether all eigenvalues w and their absolute errors `error`, (m,) each, are finite, and no two
-    eigenvalues can be the same root. A residual may be small by chance, and the error with it: eigenvalues
-    within `min_double_root_correction_over_w` times |w| can be the same root, too."""
+    eigenvalues may be the same root. Two may be if they differ by a few errors or by
+    `min_double_root_correction_over_w` times |w|; the second test is needed because an error estimate may be
+    small by chance."""
     for k in range(len(w)):
         if not (abs(w[k]) < math.inf and error[k] < math.inf):
             return False
@@ -183,9 +186,10 @@ def are_distinct_roots(w: Complex, error: Array) -> bool:
 def _refine_all_eigenvalues(
     track: FollowedEigenvalues, i: int, guess: Complex, modes: int, rod: Coefficients, direction: Coefficients
 ) -> bool:
-    """Refines the guesses `guess`, (m,), for all eigenvalues of point i, and writes the eigenvalues to the
-    track; the `modes` + 1 leading eigenvalues converge to rounding error. Returns True if all eigenvalues
-    converged, no two coincide, and every complex pair stayed complex."""
+    """Refines the guesses `guess`, (m,), of all eigenvalues of point i by Newton's method, and writes the
+    eigenvalues to the track: the `modes` + 1 leading eigenvalues to rounding error, all others to
+    `accuracy_beyond_leading_modes`. Returns True if all converged, no two may coincide, and every complex
+    pair stayed complex."""
     w = track.w[i]
     error = track.error[i]
     order = track.descending_order[i]
@@ -221,12 +225,12 @@ def _refine_all_eigenvalues(
 def follow_eigenvalues(
     track: FollowedEigenvalues, coefficients: Array, p: Array, direction: Coefficients, modes: int
 ) -> int:
-    """Follows eigenvalues of uniform rods along the path variables p, (points,), and returns the number of
-    points reached.
+    """Follows the eigenvalues of uniform rods along a path, and returns the number of points reached. p: path
+    variable of the points, (points,).
 
-    track: `w` and `descending_order` of the first point are given, the remaining points are filled.
-    coefficients: (F, nu, c2, gamma3) at each point, (points, 4). direction: d(F, nu, c2, gamma3)/dp. The
-    `modes` + 1 leading eigenvalues converge to rounding error.
+    track: eigenvalues at every point; `w` and `descending_order` of the first point are given, the following
+    points are filled. coefficients: (F, nu, c2, gamma3) at each point, (points, 4). direction: d(F, nu, c2,
+    gamma3)/dp. modes: the `modes` + 1 leading eigenvalues are refined to rounding error.
     """
     guess = track.w[0].copy()
     partner = np.empty(len(guess), np.int64)

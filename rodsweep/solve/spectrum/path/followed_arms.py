@@ -53,7 +53,8 @@ class FollowedArms:
             )
 
     def arm_family_at(self, p: float) -> ArmFamily | None:
-        """The family of interpolated arms that contains p; None if no interval reached p."""
+        """The family of interpolated arms that contains the arm at p; None if eigenvalues could not be
+        followed there."""
         self._follow_to(p)
         return next(
             (
@@ -92,8 +93,9 @@ class FollowedArms:
         return None
 
     def _proved_eigenvalues_at(self, p: float, mode_count: int) -> Iterator["ProvedEigenvalues"]:
-        """Yields the eigenvalues at p of each interval that contains p, up to the first interval with a proof
-        for `mode_count`. All growing modes and two more modes are proved at once, for the next requests."""
+        """Yields the eigenvalues at p, followed in each of the `intervals` that contain p; ends after the
+        first interval in which `mode_count` leading eigenvalues are proved complete. The proof is tried for
+        all growing modes and two more modes at once, which later requests may need."""
         for interval in self.intervals:
             followed_count = interval.track.w.shape[1]
             if not interval.p.min() <= p <= interval.p.max() or followed_count < mode_count:
@@ -149,8 +151,8 @@ class FollowedArms:
 
 
 class ProvedEigenvalues(NamedTuple):
-    """Eigenvalues at one path variable p; the leading `proved_count` eigenvalues are proved complete.
-    max_tried_mode_count: largest number of modes whose proof was tried."""
+    """Eigenvalues of the arm at one path variable p; the leading `proved_count` eigenvalues are proved
+    complete. max_tried_mode_count: largest number of leading eigenvalues for which a proof was tried."""
 
     max_tried_mode_count: int
     track: FollowedEigenvalues
