@@ -24,7 +24,8 @@ class BoundaryPointSettings:
     max_steps: int = 12
     """Newton's method fails if it has not converged after this number of steps."""
     max_step: float = 0.5
-    """Newton's method fails after a step of more than this in a coordinate of v = (x, y, h)."""
+    """Newton's method fails if a step changes a coordinate of v by more than this. v = (x, y, h): scaled
+    parameters x and y, from 0 to 1, and h = log |w|."""
     converged_step_in_rounding_errors: float = 4.0
     """Newton's method has converged if |step| <= this number times the rounding error of the point."""
     min_jacobian_determinant: float = EXPONENT_SETTINGS.min_divisor

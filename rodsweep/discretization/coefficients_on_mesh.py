@@ -114,8 +114,9 @@ def _sections_inside_elements(rod: Rod, mesh: Mesh) -> CrossSections:
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _jump_side_indices_and_nodes(material: RodMaterial, mesh: Mesh) -> tuple[IntegerArray, IntegerArray]:
-    """Returns (indices, nodes) of the k jumps, cached. indices: indices, in `Elements.one_sided_nodes`, of
-    the points just left and just right of each jump, (k, 2). nodes: index of the node at each jump, (k,)."""
+    """Returns (indices, nodes) of the k jumps, cached. indices: index, in `Elements.one_sided_nodes`, of the
+    last point of the element before each jump and of the first point of the element behind it, (k, 2). nodes:
+    index of the node at each jump, (k,)."""
     jumps = material.jump_positions
     # The comparison is exact, because meshes take the positions of jumps as edges unchanged.
     elements_behind_jumps = np.array(
@@ -149,9 +150,9 @@ def _mean_at_nodes(values: Array, mesh: Mesh) -> Array:
 
 
 class OneSidedNodePoints(NamedTuple):
-    """The `one_sided_nodes` of a mesh, sorted by the node to which they belong. first_point_indices: index of
-    the first point of each node, (nodes + 1,). quadrature_weights: quadrature weight of each point within its
-    element, (nodes + elements,)."""
+    """The points of `one_sided_nodes` of a mesh, in order: one at a node inside an element, two at a node
+    between two elements. first_point_indices: index of the first point at each node, (nodes + 1,).
+    quadrature_weights: quadrature weight of each point within its element, (nodes + elements,)."""
 
     first_point_indices: IntegerArray
     quadrature_weights: Array

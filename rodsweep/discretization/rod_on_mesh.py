@@ -35,7 +35,8 @@ class RodOnMesh(ABC):
     @property
     @abstractmethod
     def unknown_velocity_components(self) -> tuple[int, ...]:
-        """Indices of the components of V that are unknowns."""
+        """Indices of the components of the velocity V = (v1, v2, Omega3) that are unknowns; the balance gives
+        the others."""
 
     def stresses(self, x: Values) -> Values:
         """Stresses S of states x at all nodes, tip included, (3, ..., nodes + 1); the strain is E = E0 + C S.
@@ -43,8 +44,8 @@ class RodOnMesh(ABC):
         return self.layout.stresses(x)
 
     def with_coordinate(self, parameter_name: str, coordinate: float) -> Self:
-        """The same rod on the same mesh with another coordinate of the parameter `parameter_name` (see
-        `Rod.with_coordinate`). Raises ValueError for an invalid coordinate."""
+        """The same rod on the same mesh with another value of the parameter `parameter_name`, given by its
+        coordinate (1/k for a stiffness k, else the value). Raises ValueError for an invalid coordinate."""
         return replace(self, rod=self.rod.with_coordinate(parameter_name, coordinate))
 
     @cached_property
@@ -172,8 +173,9 @@ class RodOnMesh(ABC):
         return float(self.element_strains(x)[0].min())
 
     def has_convex_energy(self, x: Array) -> bool:
-        """Whether the energy of every section is convex in its strain, for one state x, (unknowns,). Without
-        convexity the equations are ill-posed: the shortest waves of the mesh grow fastest."""
+        """Whether the energy of every cross-section is convex in its strains h1 and Pi, for one state x,
+        (unknowns,). Without convexity the equations are ill-posed: the shortest waves of the mesh grow
+        fastest."""
         S = self.stresses(x)
         c = self.nodal_rod
         sections = np.stack(

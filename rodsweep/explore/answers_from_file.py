@@ -61,7 +61,7 @@ class AnswersFromFile:
         return None
 
     def cycle_for_film(self, state: PageState) -> DatasetOrArray | None:
-        """Data of the stored cycle of the rod of `state`, in which every dimension of the sweep has the
+        """The stored cycle of the rod of `state`, as data in which every dimension of the sweep has the
         length 1. None if no stable cycle of this rod is stored, or if the cycle has too few shapes for a
         film."""
         numbers = self._matching_points(state)

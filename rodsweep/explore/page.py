@@ -82,8 +82,8 @@ class Page:
         self._change_to(state.with_values(**values) if values else state)
 
     def solve(self, kind: str, tip: TipPosition | None = None) -> None:
-        """Sends a request of the kind `kind` to its solver process, even if the answer is already shown. tip:
-        position, in L, at which the tip was released; None if the answer does not depend on it."""
+        """Sends a request of the kind `kind` to its solver process, even if its answer is already stored or
+        shown. tip: position, in L, at which the tip was released; None if no tip was dragged."""
         self._cancel_request(kind)
         self._send_request(kind, tip, is_solved_again=True)
         self._show_solving()

@@ -75,7 +75,8 @@ class RodBranches:
 
     @property
     def is_coexistence_known(self) -> bool:
-        """Whether the stability of all cycles and of the straight rod is known in the followed range."""
+        """Whether the stability of the straight rod at every parameter value, and of all listed cycles, is
+        known."""
         counts = self._v["special_unstable_after"][self._v["special_kind"] == HOPF]
         straight = int(self._v["unstable_at_start"]) >= 0 and bool((counts >= 0).all())
         return straight and all(curve.is_fully_known for curve in self.curves)
@@ -83,16 +84,17 @@ class RodBranches:
     def straight_rod_stable_unstable_ranges(
         self, span: ParameterRange
     ) -> tuple[list[ParameterRange], list[ParameterRange]]:
-        """Returns (stable, unstable): ranges within `span` in which the straight rod is stable, or unstable.
-        Both lists are empty if special points of some branch are not stored."""
+        """Returns (stable, unstable): ranges of the parameter within `span` in which the straight rod is
+        stable, or unstable. Both lists are empty if a branch is hidden, whose special points are not all
+        stored."""
         intervals = [] if self.hidden_count else self.straight_rod_stability_intervals(span)
         stable, unstable = ([(a, b) for a, b, value in intervals if value == kind] for kind in (1, 0))
         return union_of_ranges(stable), union_of_ranges(unstable)
 
     def straight_rod_stability_intervals(self, span: ParameterRange) -> list[tuple[float, float, int]]:
-        """Intervals (low, high, stability of the straight rod) between Hopf points, from `span[0]` to
-        `span[1]`, or to the last Hopf point if this lies beyond `span[1]`. Stability: 1 stable, 0 unstable,
-        -1 unknown."""
+        """Intervals (low, high, stability of the straight rod) between successive Hopf points. The intervals
+        reach from `span[0]` to `span[1]`, or farther, to the last Hopf point, if this lies beyond `span[1]`.
+        Stability: 1 stable, 0 unstable, -1 unknown."""
         stored = self._v
         is_hopf = stored["special_kind"] == HOPF
         values, indices = np.unique(stored["special_at"][is_hopf], return_index=True)
@@ -106,7 +108,8 @@ class RodBranches:
 
 
 def runs_of_equal_stability(stable: NDArray[np.integer]) -> Iterator[tuple[slice, int]]:
-    """Yields (vertices, stability) of each run of equal values in `stable`, the stability between n
-    neighbouring vertices, (n - 1,). vertices: slice of the vertices of the run, with both ends."""
+    """Yields (vertices, stability) of each part of a curve of n points with equal stability. stable:
+    stability of each chord between successive points, (n - 1,). vertices: slice of the points of the part,
+    both ends included."""
     starts = [0, *(np.flatnonzero(np.diff(stable)) + 1), len(stable)]
     yield from ((slice(start, end + 1), int(stable[start])) for start, end in pairwise(starts) if end > start)

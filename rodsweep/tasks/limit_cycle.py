@@ -49,9 +49,9 @@ cycle."""
 MULTIPLIER_FIELD_BY_VARIABLE = {f"multiplier_{part}": f"multipliers_{part}" for part in ("real", "imag")}
 """Field of `CycleOutcome` by name of the variable, where the two names differ."""
 K2_VALUES_WITH_TAU1 = Range(isfinite, "a finite number")
-"""Values of k2 for which tau1 exists."""
+"""Values of k2 for which the time scale tau1 = gamma3/k2 is positive."""
 GAMMA3_VALUES_WITH_TAU1 = Range(lambda value: value > 0, "a number above 0")
-"""Values of gamma3 for which tau1 exists."""
+"""Values of gamma3 for which the time scale tau1 = gamma3/k2 is positive."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,8 +88,9 @@ class LimitCycleTask(Task):
         return times | ({"u": lobatto_points(options.nodes)} if options.shapes else {})
 
     def variables_from_config(self, in_order: MapInOrder = map_on_one_rank) -> tuple[FilledVariable, ...]:
-        """Hopf points of the straight rod on the lines of points. in_order: function that applies a
-        function to a sequence, in order, on all ranks."""
+        """Hopf points of the straight rods, along the lines of points that differ in one parameter. in_order:
+        function that applies a function to each element of a sequence, on all ranks, and returns the results
+        in order."""
         lines = hopf_search_lines_of_points(self.points)
         if lines:
             require_solvers()

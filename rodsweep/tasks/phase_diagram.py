@@ -34,8 +34,9 @@ WORK_NOT_IN_COST_ESTIMATE_TEXT = (
     "branches beyond the range, curves of folds and torus points, and rows that such a curve shows to have a "
     "detached branch"
 )
-"""Work of a diagram with cycles that only the solved rows show. It can take most of the time of a small
-diagram: 30 s, besides 2 s for the rows, in a diagram of three rows with a detached branch."""
+"""Work of a diagram with cycles that the cost estimate omits, because it is known only after the rows are
+solved. It can take most of the time of a small diagram: in a diagram of three rows with a detached branch 30
+s, the rows 2 s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +49,7 @@ class PhaseDiagramTask(CertifiedTask):
     uncertified_risk: ClassVar[str] = "crossings may be missed"
     """Consequence of a missing certificate, as `check` prints it."""
     modes_counted_per: ClassVar[str] = "line"
-    """The certificate counts the modes of some rods on each row."""
+    """For each line of points, here a row, a certificate counts the unstable modes at some of its rods."""
 
     @property
     def values_along_row(self) -> np.ndarray:
@@ -131,7 +132,8 @@ class PhaseDiagramTask(CertifiedTask):
         )
 
     def _cost_with_soft_and_pulled_rows(self, rows_cost: CostEstimate, is_varying: bool) -> CostEstimate:
-        """The cost `rows_cost` of rows along F with the further time of soft and of pulled rows."""
+        """The cost `rows_cost` of rows along F, increased by the time of rows of rods that are soft in
+        stretch or shear, and of rows that begin at a pulling force F < 0."""
         soft = extra_seconds_of_soft_searches(self.points, float(self.values_along_row[-1]), is_varying)
         sampled_rows = sampled_points_with_rod(self.points, MAX_SAMPLED_ROWS)
         rods = [rod for row in sampled_rows if (rod := self.rod_of_row(int(row)))]
@@ -188,18 +190,18 @@ class PhaseDiagramTask(CertifiedTask):
         return solve_coexistence(rod, self.row_request(), workspace, starts)
 
     def straight_row_values(self, result: "DiagramRow") -> dict[str, Any]:
-        """Variables of the file for a row without cycles."""
+        """Variables of the file, by name, for a row of a diagram in which cycles were not requested."""
         request = self.row_request()
         return row_values(result, request.parameter_name, request.max_thresholds)
 
     def coexistence_row_values(self, result: "CoexistenceRow") -> dict[str, Any]:
-        """Variables of the file for a row with cycles."""
+        """Variables of the file, by name, for a row of a diagram in which cycles were requested."""
         cycles = row_cycle_values(result, self.row_request().parameter_name)
         return self.straight_row_values(result.straight_rod_row) | cycles
 
     def rod_of_row(self, index: int) -> Rod | None:
-        """The rod of a row, with the neutral value, such as F = 0 or k1 = inf, of the parameter that varies
-        along the row; None if the force crushes this rod."""
+        """The rod of the row with the index `index`, in which the parameter that varies along the row has its
+        neutral value, such as F = 0 or k1 = inf; None if the force crushes this rod."""
         try:
             return self.points.rod(index, gamma1=self.config.gamma1)
         except Crushed:

@@ -98,9 +98,10 @@ class ArmDeterminant:
 
 
 class CoefficientSamples(NamedTuple):
-    """Samples of n arms between the breaks of their profile. points: material coordinates u, (points,).
-    local_coefficients: `LocalCoefficients` at the points, each (n, points). squared_exponent_coefficients:
-    coefficients of z+-, as in `ExponentSamples`, (4, n, points)."""
+    """Coefficients of n arms at points between the breaks of their profile. points: material coordinates u,
+    (points,). local_coefficients: `LocalCoefficients` at the points, each (n, points).
+    squared_exponent_coefficients: coefficients of the squared local exponents z+-(w), as in
+    `ExponentSamples`, (4, n, points)."""
 
     points: Array
     local_coefficients: LocalCoefficients
@@ -168,6 +169,7 @@ def eigenfunction_wave_number(rod: Rod, w: complex) -> float:
 
 
 def forget_arm_determinants() -> None:
-    """Empties the cache of `arm_determinant`. Propagators made for a larger |w| change D by rounding errors.
-    A point or a search that begins with an empty cache has the same result in every process."""
+    """Empties the cache of `arm_determinant`. Propagators made earlier for a larger |w| change D by rounding
+    errors; a point or a search that begins with an empty cache therefore has the same result in every
+    process."""
     arm_determinant.cache_clear()

@@ -78,8 +78,8 @@ def _sum_series(series: Array, T: Array, rates: Array, values: Array, slopes: Ar
 
 @compiled
 def W_and_propagators_at(family: ArmFamily, p: float) -> tuple[float, Array]:
-    """Returns (W, propagators for |w| <= W, (elements, terms, PROPAGATOR_LENGTH)) of the arm at p of a
-    family."""
+    """Returns (W, propagators) of the arm of a family at the path variable p. W: largest |w| for which the
+    propagators, (elements, terms, PROPAGATOR_LENGTH), are valid."""
     polynomials = np.empty(family.chebyshev_coefficients.shape[1:])
     write_propagators(family, p, polynomials, np.empty_like(polynomials))
     return family.largest_w, polynomials

@@ -18,11 +18,12 @@ from ..exponents import EXPONENT_SETTINGS
 
 
 class ExponentSamples(NamedTuple):
-    """Coefficients of z+-(w) at points along an arm, and the weights of a quadrature over these points.
+    """Coefficients of z+-(w), the squared exponents of the module docstring, at points along an arm, and the
+    weights of a quadrature over these points.
 
-    squared_exponent_coefficients: coefficients of z+-, the squared exponents (see the module docstring), (4,
-    points): c2 gamma2 + c3 gamma3 (of w) and F c3 g (subtracted) in the mean of z+ and z-; g nu gamma2 c3 (of
-    w) and c2 c3 gamma2 gamma3 (of w^2) in P^2. quadrature_weights: quadrature weights, (points,).
+    squared_exponent_coefficients: (4, points), rows c2 gamma2 + c3 gamma3, F c3 g, g nu gamma2 c3, and c2 c3
+    gamma2 gamma3, so that z+- = row 0 w - row 1 +- 2 P and P^2 = row 2 w + row 3 w^2. quadrature_weights:
+    (points,).
     """
 
     squared_exponent_coefficients: Array
@@ -57,9 +58,10 @@ def modulus_of_parts(real: float, imag: float) -> float:
 
 @compiled_with_reordered_sums
 def mean_wave_number_and_w_scale(w: complex, samples: ExponentSamples) -> tuple[float, float]:
-    """Returns (wave number, scale of w) at w. wave number: mean along the arm of (|sqrt z+| + |sqrt z-|)/2,
-    the local bound of |q| in exp(+-q u). scale of w: change of w over which an exponent of D changes by about
-    one, 1/(average along the arm of the larger |d sqrt(z+-)/dw|)."""
+    """Returns (wave number, scale of w) at w. wave number, in 1/L: mean along the arm of (|sqrt z+| + |sqrt
+    z-|)/2, a local bound of |q| for eigenfunctions exp(+-q u). scale of w, in 1/tau2: change of w over which
+    an exponent of D changes by about 1: the reciprocal of the mean along the arm of the larger |d
+    sqrt(z+-)/dw|."""
     wave_number = 0.0
     rate_sum = 0.0
     a = w.real
@@ -89,7 +91,8 @@ def mean_wave_number_and_w_scale(w: complex, samples: ExponentSamples) -> tuple[
 
 @compiled
 def mean_wave_numbers_and_w_scales(w: Complex, samples: ExponentSamples) -> Array:
-    """Wave numbers and scales of w of `mean_wave_number_and_w_scale` at every w, (n,), as (2, n)."""
+    """Wave numbers, row 0, and scales of w, row 1, of `mean_wave_number_and_w_scale` at every w: (2, n). w:
+    (n,), conjugates next to each other."""
     results = np.empty((2, len(w)))
     for n in range(len(w)):
         # Conjugates, which stand next to each other, have the same scales.

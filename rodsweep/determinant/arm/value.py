@@ -93,9 +93,9 @@ def divide_real_by_norm(x: Array) -> float:
 def _multiply_propagators(
     z: complex, W: float, polynomials: Array, p_derivatives: Array
 ) -> tuple[complex, complex, complex, float]:
-    """Returns (D, dD/dw, dD/dp, S) of `path_value_from_propagators` at w = z W; dD/dp is 0 if `p_derivatives`
-    is empty. polynomials, p_derivatives: propagators and their derivatives by p, (elements, terms,
-    PROPAGATOR_LENGTH)."""
+    """Returns (D exp(-S), dD/dw exp(-S), dD/dp exp(-S), S) at w = z W, as `path_value_from_propagators` does
+    for w; dD/dp is 0 if `p_derivatives` is empty. polynomials, p_derivatives: propagators and their
+    derivatives by p, (elements, terms, PROPAGATOR_LENGTH)."""
     elements, terms, _ = polynomials.shape
     has_p_derivative = len(p_derivatives) > 0
     powers = powers_and_derivatives(z, terms)
@@ -159,8 +159,8 @@ def _multiply_real_propagators(
 
 @compiled
 def scaled_determinant_from_propagators(w: complex, W: float, polynomials: Array) -> tuple[complex, float]:
-    """Returns (D exp(-S), S) at w, without derivatives. polynomials: propagators for |w| <= W, (elements,
-    terms, PROPAGATOR_LENGTH)."""
+    """Returns (D exp(-S), S) at w, without derivatives; S: logarithm of the scale that keeps the numbers
+    finite. polynomials: propagators for |w| <= W, (elements, terms, PROPAGATOR_LENGTH)."""
     powers = powers_and_derivatives(w / W, polynomials.shape[1])
     C = np.empty((2, PROPAGATOR_LENGTH))
     minors = np.zeros((2, MINOR_COUNT))

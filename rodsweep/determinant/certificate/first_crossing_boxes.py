@@ -25,7 +25,8 @@ class CoveringSettings:
     max_upper_over_lower_eta: float = 4.0
     """Largest ratio of the upper to the lower end of a first box in eta."""
     max_nu_decrease_fraction: float = 0.5
-    """The stretch nu decreases over an interval of p by at most this fraction of its value at the start."""
+    """Largest decrease of the stretch nu over an interval of p, as a fraction of nu at the start of the
+    interval."""
     min_interval_over_longest: float = 1e-6
     """Shortest interval divided by the longest interval. Near p = 0 intervals are short, because a drag or
     compliance p at most doubles over an interval."""

@@ -39,6 +39,6 @@ def position_slopes(t: Array, spacing_ratio: float) -> Array:
 
 
 def node_spacing_ratios_of_halves(ratios: tuple[float, ...]) -> tuple[float, ...]:
-    """Spacing ratios of both halves of every element, in order: for the ratio s, (1 + s)/2 and 2 s/(1 + s),
-    because the spacing is linear in v."""
+    """Spacing ratios of the two halves of every element, element after element. The halves of an element with
+    the ratio s have the ratios (1 + s)/2 and 2 s/(1 + s), because the spacing is linear in v."""
     return tuple(half for s in ratios for half in ((1 + s) / 2, 2 * s / (1 + s)))

@@ -51,12 +51,12 @@ def hermite_fourier_coefficients(values: Array, slopes: Array) -> Complex:
 
 @compiled_with_reordered_sums
 def hermite_fourier_coefficients_of_columns(values: Array, slopes: Array, signs: Array) -> Complex:
-    """`hermite_fourier_coefficients`, (m + 1, columns), of columns given over half a period or a whole
-    period.
+    """`hermite_fourier_coefficients`, (m + 1, columns), of several fields, one per column, given at times
+    over half a period or a whole period.
 
-    values, slopes: (nodes, columns). signs: factor of each column after half a period, (columns,), or 0 for
-    nodes over a whole period. c_k = 2/m ((1 - k/m) S_k + D_k/(2 pi i m)) with the sums S_k of the values and
-    D_k of the slopes over the nodes j, times exp(-2 pi i k j/m).
+    values, slopes: (nodes, columns). signs: (columns,); 1 or -1 if a field repeats or changes its sign after
+    half a period and the nodes cover half a period; 0 if the nodes cover a whole period. c_k = 2/m ((1 - k/m)
+    S_k + D_k/(2 pi i m)), S_k and D_k: sums over all m times j/m of value and slope times exp(-2 pi i k j/m).
     """
     nodes, columns = values.shape
     m = 2 * nodes if signs[0] != 0 else nodes

@@ -33,7 +33,8 @@ class ArmResolutionSettings:
     profile_order_increase: int = 2
     """Increase of the order if coefficients vary within an element."""
     graded_element_length_ratio: float = 3.0
-    """Ratio of the lengths of successive elements towards an end of the arm at which a wave grows."""
+    """Length of an element divided by the length of the next element, nearer to an end of the arm at which a
+    wave grows."""
 
 
 ARM_RESOLUTION_SETTINGS = ArmResolutionSettings()
@@ -71,9 +72,9 @@ def _cached_mesh(edges: tuple[float, ...], order: int) -> ArmMesh:
 
 
 def graded_towards_ends(rod: Rod, mesh: ArmMesh) -> ArmMesh:
-    """The mesh with elements graded towards each end of the arm whose most amplified local wave `mesh` does
-    not represent; `mesh` itself if there is no such end. The leading eigenfunctions of an arm with a thin
-    end, where g < 0, are confined to a small fraction of the last element."""
+    """The mesh with elements graded towards each end of the arm at which the fastest growing local wave is
+    too short for `mesh`; `mesh` itself if there is no such end. The leading eigenfunctions of an arm with a
+    thin end, where g < 0, are confined to a small fraction of the last element."""
     wave_numbers = fastest_growing_wave_numbers_at_ends(rod)
     edges = np.array(mesh.edges)
     first = _division_distances_from_end(float(edges[1]), mesh.order, float(wave_numbers[0]))
@@ -84,8 +85,9 @@ def graded_towards_ends(rod: Rod, mesh: ArmMesh) -> ArmMesh:
 
 
 def _division_distances_from_end(length: float, order: int, wave_number: float) -> Array:
-    """Distances from an end of the arm, increasing, at which the element at this end is divided, (n,); empty
-    if elements of the order `order` and the length `length` represent the wave number."""
+    """Distances from an end of the arm, increasing, of the points at which the element at this end is
+    divided, (n,). length, order: of this element. wave_number: in 1/L. Empty if the element resolves this
+    wave number."""
     ratio = ARM_RESOLUTION_SETTINGS.graded_element_length_ratio
     wave_count = wave_number * length / (RESOLUTION_SETTINGS.max_wave_number_per_node * order)
     count = ceil(log(max(wave_count, 1.0), ratio))
@@ -119,8 +121,8 @@ def _elements_for_wave(
     rod: Rod, phases: Array, accuracy: float, max_order: int, order_increase: int
 ) -> Elements:
     """Elements that resolve a wave along an arm to a relative accuracy. phases: phase of the wave over each
-    sample interval, |q| times length, (n,). max_order: maximum order of an element without `order_increase`.
-    order_increase: number added to the order that uniform pieces need."""
+    sample interval, |q| times length, (n,). max_order: maximum order of an element before `order_increase` is
+    added. order_increase: number added to the order that an arm with constant coefficients would need."""
     intervals = len(rod.material.breaks) - 1
     interval_phases = list_of(phases.reshape(intervals, -1).sum(axis=1))
     min_counts = tuple(required_element_count(phase, accuracy, max_order) for phase in interval_phases)
@@ -137,8 +139,8 @@ def _edges_and_counts(
     material: RodMaterial, taper: float, min_counts: tuple[int, ...]
 ) -> tuple[tuple[float, ...], tuple[int, ...]]:
     """Returns (edges, counts). edges: edges of the elements of an arm, increasing. counts: number of elements
-    of each interval between breaks, at least `min_counts` and as many as `max_element_radius_ratio`
-    requires."""
+    of each interval between breaks of the profile: at least the number in `min_counts`, more if
+    `max_element_radius_ratio` requires more."""
     edges = [0.0]
     counts = []
     for start, stop, min_count in zip(material.breaks[:-1], material.breaks[1:], min_counts, strict=True):

@@ -50,7 +50,8 @@ class MixedForm(RodOnMesh):
 
     @cached_property
     def law_derivatives(self) -> LawDerivativesAtRest:
-        """Derivatives of the constitutive law at rest, at all nodes."""
+        """Derivatives of the constitutive law s(S) at S = 0, the straight rod under its load, at all
+        nodes."""
         return law_derivatives_at_rest(self.rod, self.nodal_rod)
 
     @cached_property
@@ -67,10 +68,11 @@ class MixedForm(RodOnMesh):
 
     @cached_property
     def A_terms_without_derivative(self) -> tuple[Array, Array]:
-        """Returns (W ad_E, W (ad*_E T + ad*_{C .} Sigma)), the terms of A without D and drag, by equation and
-        component at each node but the tip, (3, 3, nodes) each: the terms of V in the equations of S, and of S
-        in the equations of V; T: tangent of the law. The tip contributes nothing: s = 0, and E enters only
-        the equation of S(1), which is not solved."""
+        """Returns (W ad_E, W (ad*_E T + ad*_{C .} Sigma)), the terms of A without the differentiation matrix
+        and the drag; T: tangent of the law. Both map components at a node to equations at the same node, for
+        each node but the tip: (equation, component, node), (3, 3, nodes). The first term acts on V in the
+        equations of S, the second on S in the equations of V. The tip contributes nothing: s = 0, and E
+        enters only the equation of S(1), which is not solved."""
         nodal = self.nodal_rod
         W = self.mesh.quadrature_weights[:-1]
         identity = np.eye(SE2_DIMENSION)[:, :, None]

@@ -14,9 +14,9 @@ from .numbers_table import SI_VARIABLE_BY_DIMENSIONLESS_NAME
 TITLE_THRESHOLD_VARIABLES = ("F_onset", "F_hopf", "F_restabilization")
 """Variables of the thresholds in the title."""
 ROD_THRESHOLD_FORMATS = ("F* = {:.7g}", "F** = {:.7g}", "stable from {:.7g}")
-"""Formats of `TITLE_THRESHOLD_VARIABLES` in the title, for a rod (load F)."""
+"""Formats of the values of `TITLE_THRESHOLD_VARIABLES`, in k3/L^2, in the title for a rod."""
 ARM_THRESHOLD_FORMATS = ("oscillates from {:.5g} kPa", "flutters from {:.5g} kPa", "stable from {:.5g} kPa")
-"""Formats of `TITLE_THRESHOLD_VARIABLES` in the title, for an arm (load: pressure)."""
+"""Formats of the values of `TITLE_THRESHOLD_VARIABLES`, as pressures in kPa, in the title for an arm."""
 THRESHOLD_LINE_LOOKS = {
     "onset": ("oscillates from F*", card.NEUTRAL_COLOUR),
     "hopf": ("flutters, Hopf point F**", card.UNSTABLE_COLOUR),
@@ -49,7 +49,8 @@ class GrowthRatePicture:
         self.card = card.Card("growth", figure, title_lines=2)
 
     def show_rates(self, answer: dict[str, Any], load: PictureAxis) -> None:
-        """Draws the growth rates of the answer `answer`."""
+        """Draws the three largest growth rates of the answer `answer` against the load. load: axis of the
+        load."""
         first_rate, second_rate, third_rate = answer["growth_rate"][:, :3].T
         F = answer["F"] * load.factor_from_dimensionless
         self.rate_source.data = card.source_columns(

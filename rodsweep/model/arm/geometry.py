@@ -25,9 +25,9 @@ POWER_ITERATION_TOLERANCE = 1e-12
 MAX_POWER_ITERATIONS = 1000
 """Maximum number of steps of the power iteration, which usually takes twenty."""
 MAX_RADIUS_RATIO_OF_PROFILE_ROWS = 1.3
-"""Maximum ratio of the radii of a cone at neighbouring u of its profile. The cubic polynomials of the profile
-then approximate the drags, for tapers from 0.01 to 100, to a relative error of 6e-4 if the arm is 20 or more
-radii long, and of 5e-3 if it is ten radii long."""
+"""Maximum ratio of the radii of a cone at neighbouring u of its profile. Between these u the profile
+interpolates the drags by cubic polynomials, with a relative error of 6e-4 for tapers from 0.01 to 100 if the
+arm is 20 or more radii long, and of 5e-3 if it is ten radii long."""
 
 
 class Station(NamedTuple):

@@ -96,8 +96,8 @@ class _UnrollingState(NamedTuple):
 
 
 class _UnrollingTransformer(ast.NodeVisitor):
-    """Copies a syntax tree. Names in `known_values` are replaced by their values, and loops over known values
-    are unrolled."""
+    """Copies a syntax tree. Expressions of names in `known_values` are replaced by their values if these are
+    numbers, and loops over known values are unrolled."""
 
     def __init__(self, known_values: Mapping[str, Any], state: _UnrollingState) -> None:
         self.known_values = known_values

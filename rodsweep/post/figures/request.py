@@ -21,7 +21,7 @@ Returns a view with the shapes."""
 FigureClass = Figure
 """Class of the figures: matplotlib's `Figure`."""
 COLUMN_WIDTHS = {"single": 3.375, "double": 7.0}
-"""Widths of the columns of a journal, in inches, by name."""
+"""Widths of a figure over one and over two columns of a journal, in inches, by name."""
 ROOT_CHOICES = ("rightmost", "smallest", "all")
 """Choices of the roots in a figure of spectra along a line: the two rightmost, the two smallest, or all
 stored roots."""
@@ -29,7 +29,7 @@ FIGURE_KINDS_BY_TASK = {
     "limit_cycle": ("cycle", "amplitude", "maps", "energy", "transient", "animation"),
     "thresholds": ("lines", "map"),
 }
-"""Names of the kinds of figures of each task that has several kinds."""
+"""Names of the kinds of figures between which --what chooses, by task; other tasks have a single kind."""
 FIGURE_KINDS = tuple(kind for kinds in FIGURE_KINDS_BY_TASK.values() for kind in kinds)
 """Names of the kinds of figures of all tasks."""
 HEIGHT_TO_WIDTH_EXPONENT = 0.5
@@ -117,8 +117,8 @@ class FigureRequest:
     """Callback for the finished figure; if given, no file is written."""
 
     def require_single_view(self, *kinds: str) -> ResultView:
-        """View of the only file to draw. Raises InputError for several files, for chosen points, for a value
-        of --what that is not in `kinds`, and for an invalid output name."""
+        """The only result to draw. Raises InputError if there are several files, or for options that do not
+        fit: chosen points, a value of --what that is not in `kinds`, or an invalid output name."""
         self.refuse_figure_options(self.views[0], kinds)
         self.require_output()
         return self.views[0]

@@ -49,8 +49,8 @@ class HoverPoint:
 
 @dataclass(frozen=True, slots=True)
 class HoverSeries:
-    """Texts for n values of a curve. positions_in_pixels: positions relative to the lower left corner of the
-    figure, in pixels, (n, 2). texts: texts of the values."""
+    """Texts for n values of a curve, shown when the pointer is at them. positions_in_pixels: positions of the
+    values relative to the lower left corner of the figure, (n, 2). texts: (n,)."""
 
     positions_in_pixels: Array
     texts: Sequence[str]

@@ -31,7 +31,8 @@ class Unit:
     factor_from_dimensionless: float = 1.0
 
     def text(self, value: float, error: float) -> str:
-        """`value` as text with the unit, rounded according to `error`. value, error: dimensionless."""
+        """`value` as text with the unit, rounded according to its absolute error `error`. Both arguments are
+        dimensionless and are converted to the unit."""
         factor = self.factor_from_dimensionless
         return f"{rounded_text(factor * value, factor * error)} {self.name}"
 
@@ -104,8 +105,8 @@ ROD_UNITS = PortraitUnits(
 
 
 def portrait_units(view: ResultView, load_kind: str, largest: float) -> PortraitUnits:
-    """Units of the portrait of a rod or an arm. load_kind: kind of the load of an arm. largest: largest F,
-    for which the prefix of the load is chosen."""
+    """Units of the portrait of a rod or an arm. load_kind: "force" or "pressure", kind of the load of an arm.
+    largest: largest dimensionless force in the portrait, for which the SI prefix of the load is chosen."""
     if not view.quantities:
         return ROD_UNITS
     force, length, tau2 = (
@@ -127,9 +128,9 @@ def portrait_units(view: ResultView, load_kind: str, largest: float) -> Portrait
 
 
 def rescale_panel(axes: Axes, x: float, y: float) -> None:
-    """Multiplies the coordinates of all curves and marks in a panel by the factors x and y, and the
-    horizontal coordinates of all bars and spans by x. Resets the tick labels of a logarithmic y axis if y is
-    not 1."""
+    """Converts the panel to other units: multiplies the coordinates of all curves and marks by the factors x
+    and y, and the horizontal coordinates of all bars and spans by x. Resets the tick labels of a logarithmic
+    y axis if y is not 1."""
     for line in axes.lines:
         line.set_data(x * np.asarray(line.get_xdata()), y * np.asarray(line.get_ydata()))
     for area in axes.patches:

@@ -24,7 +24,7 @@ BAUTIN_END_WORDS = {
     "list_full": "the maximum number of points",
     "closed": "its first point",
 }
-"""Phrase for the reason for which a curve of generalised Hopf points ends."""
+"""Phrase for the reason why a curve of generalised Hopf points ends, by stored word."""
 INCOMPLETE_CURVE_ENDS = ("not_followed", "list_full")
 """Reasons for which a boundary curve is incomplete."""
 
@@ -94,7 +94,9 @@ def incomplete_curve_lines(view: ResultView, parameters: PlaneParameters) -> lis
 
 
 def _curve_fold_lines(view: ResultView, parameters: PlaneParameters) -> list[str]:
-    """Lines about folds of curves, and about the fold in the partial beam limit of the paper's Sec. VIII."""
+    """Lines about folds of the boundary curves, where one parameter is extremal along the curve. Also, if
+    stored, a line about the fold of the Hopf curve in the partial beam limit (k2 = inf, gamma3 = 0) of the
+    paper's Sec. VIII."""
     variables = view.variables
     lines = []
     for i, (kind, name) in enumerate(zip(variables["fold_kind"], variables["fold_of"], strict=True)):

@@ -1,4 +1,5 @@
-"""Limits to which branches of cycles are followed beyond the range, and missed cycles, in `rodsweep show`."""
+"""Sentences of `rodsweep show` on the range in which branches of cycles are followed, on the limits beyond
+this range up to which they are followed, and on the cycles that may be missed."""
 
 import numpy as np
 
@@ -14,7 +15,7 @@ MISSED_CYCLES_TEXT = (
     "several multipliers outside the unit circle and comes back, begins at a symmetry breaking on such a "
     "branch, or is connected to no Hopf point"
 )
-"""Clause on the cycles within the range that are not found."""
+"""Clause that states which cycles within the range are not found."""
 
 
 def followed_beyond_range_text(points: PointSelection, parameter_name: str, prefix: str) -> str:
@@ -32,8 +33,9 @@ def followed_beyond_range_text(points: PointSelection, parameter_name: str, pref
 
 
 def searched_range_line(points: PointSelection) -> str:
-    """Line on the range of the followed parameter, on the completeness of the list of Hopf points, and on the
-    limits beyond the range; "no branch is followed" if the force crushes all rods everywhere."""
+    """Line on the range in which branches are followed, on the completeness of the list of Hopf points from
+    which they start, and on the limits beyond the range; "no branch is followed" if the force crushes all
+    rods in the whole range."""
     view = points.view
     parameter = followed_parameter(view)
     start, end = followed_range(view)

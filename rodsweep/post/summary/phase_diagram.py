@@ -36,7 +36,8 @@ FLUTTER, UNDECIDED = (stored_number_of_word(word, STABILITY_CLASSES) for word in
 
 
 def phase_diagram_summary(points: PointSelection) -> SummaryLines:
-    """Summary of the computed rows of a phase diagram."""
+    """Summary of the computed rows of a phase diagram; a row contains the rods that differ in one parameter
+    only."""
     view = points.view
     rows = DiagramRows(view, points.mask, plane_parameters(view))
     classes = rows.values("class")
@@ -65,8 +66,8 @@ def phase_diagram_summary(points: PointSelection) -> SummaryLines:
 
 
 def diagram_row_lines(rows: DiagramRows) -> list[str]:
-    """Lines about the classes at the starts of the rows, crossings by kind, undecided ranges, and rows with
-    and without flutter."""
+    """Lines about the stability classes at the starts of the rows, about crossings by kind, about ranges in
+    which the behaviour is undecided, and about rows with and without flutter."""
     variables = rows.variables
     stored_counts = (variables["crossing_kind"] > 0).sum(axis=-1)
     has_unknown = (variables["crossing_count"] != stored_counts) | np.isfinite(variables["open_from"])
@@ -79,7 +80,8 @@ def diagram_row_lines(rows: DiagramRows) -> list[str]:
 
 
 def _row_start_lines(rows: DiagramRows) -> list[str]:
-    """List with a line on the classes at the starts of the rows; empty if all these classes are monotone."""
+    """List of one line that counts the stability classes of the straight rod at the starts of the rows; empty
+    if all are monotone."""
     start_classes = rows.values("class")[:, 0]
     words = [(word, int((start_classes == value).sum())) for value, word in STABILITY_CLASSES]
     if ("monotone", rows.count) in words:
@@ -91,8 +93,8 @@ def _row_start_lines(rows: DiagramRows) -> list[str]:
 
 
 def _crossing_lines(rows: DiagramRows, incomplete: np.ndarray) -> list[str]:
-    """Lines about the crossings of each kind; `incomplete`: mask of rows with further crossings that are not
-    known."""
+    """Lines about the crossings of each kind. incomplete: mask of the rows on which crossings are not stored
+    or not found."""
     lines = []
     for number, word in enumerate(CROSSING_KINDS):
         of_kind = rows.item_mask(rows.variables["crossing_kind"] == number)
@@ -137,8 +139,8 @@ def _undecided_and_flutter_lines(rows: DiagramRows, incomplete: np.ndarray) -> l
 
 
 def straight_arm_threshold_lines(rows: DiagramRows) -> list[str]:
-    """Lines about the thresholds of the straight arms along F, by kind, in the arms' units; an empty list for
-    a rod, and for rows along another parameter."""
+    """Lines about the loads at which the straight arms have thresholds, by kind, in the units typed by the
+    user. Empty for rods, and for rows along a parameter other than F."""
     view = rows.view
     if not view.quantities or "F" in view.parameters:
         return []

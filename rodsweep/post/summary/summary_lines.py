@@ -88,7 +88,7 @@ def truncated_lines(lines: Sequence[str], noun: str) -> Iterator[str]:
 
 
 def completeness_predicate(view: ResultView) -> str:
-    """Predicate for the list of crossings in a file: "is proved complete" for uniform rods of linear
-    material, else "is confirmed by counts of unstable modes"."""
+    """Predicate for the list of crossings of a result: "is proved complete" if all its rods are uniform and
+    of linear material, else "is confirmed by counts of unstable modes"."""
     is_proved = has_uniform_linear_rods(view.config)
     return "is proved complete" if is_proved else "is confirmed by counts of unstable modes"

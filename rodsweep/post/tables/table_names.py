@@ -77,7 +77,8 @@ class TableContents:
         return (POINTS_TABLE, *branches, *self.variables_by_list)
 
     def dimensions_of_list(self, table: str) -> tuple[str, ...]:
-        """Dimensions of the list `table`, without the dimensions of the points; empty for other tables."""
+        """Dimensions of the list `table` other than the dimensions of the points; empty for a table that is
+        no list."""
         return self.variables_by_list[table][0].extra_dimensions if table in self.variables_by_list else ()
 
 
@@ -110,16 +111,17 @@ def table_contents_of(view: ResultView) -> TableContents:
 
 
 def table_name_of(dimensions: tuple[str, ...]) -> str:
-    """Name of the table with the given dimensions, without the dimensions of the points."""
+    """Name of the table of variables with the dimensions `dimensions`, given without the dimensions of the
+    points."""
     return GRID_TABLE if dimensions[0] in PARAMETERS else TABLE_NAMES[dimensions]
 
 
 def chosen_table(
     view: ResultView, contents: TableContents, table: str | None, columns: tuple[str, ...]
 ) -> str:
-    """Name of the table that the user requests: `table` if given, else the list that has the columns
-    `columns`, else POINTS_TABLE if only columns of points are named, else the default table of the task.
-    Raises InputError for an unknown name, and for columns of two tables."""
+    """Name of the table that the user requests: `table` if given; else the list that has one of the columns
+    `columns`; else POINTS_TABLE if all of them are columns of points; without columns, the default table of
+    the task. Raises InputError for an unknown name, and for columns of two different lists."""
     if table is not None:
         if table not in contents.table_names:
             hint = unknown_key_hint(table, contents.table_names, KNOWN_NAMES_PHRASE)

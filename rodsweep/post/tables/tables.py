@@ -47,7 +47,8 @@ class Tables:
     view: ResultView
 
     def __post_init__(self) -> None:
-        """Replaces a grid over an arm's quantities by the list of its points."""
+        """Replaces a `view` whose grid has an arm's quantities as axes by a view of the list of its
+        points."""
         object.__setattr__(self, "view", self.view.as_list)
 
     @cached_property
@@ -109,8 +110,9 @@ class Tables:
         return rows, [*columns, *si_columns(self.view, variables, columns, points)]
 
     def _branches_table_columns(self) -> tuple[NDArray[np.int64], list[Column]]:
-        """Returns (point_indices, columns) of the table `branches`: cycles, with the special points between
-        the cycles, and the kind of special point. point_indices: index of the point of each row, (rows,)."""
+        """Returns (point_indices, columns) of the table `branches`: cycles and special points in the order of
+        the branches, with the kind of special point. point_indices: index of the point of the file for each
+        row, (rows,)."""
         cycles, cycle_columns = self._item_indices_and_columns("cycles")
         special_points, special_columns = self._item_indices_and_columns("special_points")
         by_name = {column.name: column for column in special_columns}

@@ -24,7 +24,7 @@ MAX_REREADS = 20
 """Maximum number of attempts to read a file that is replaced meanwhile. A run replaces its file at most every
 few seconds; more replacements indicate a fault."""
 SNAPSHOT_ATTRIBUTE = "snapshot"
-"""Name of the attribute with the time of a snapshot; the attribute marks a file as a snapshot."""
+"""Name of the attribute with the time at which a snapshot was written; only snapshots have this attribute."""
 ReadResult = TypeVar("ReadResult")
 
 

@@ -27,7 +27,8 @@ HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 HDF5_END_OFFSET_BY_VERSION = {0: 40, 1: 44, 2: 28, 3: 28}
 """Offset of the eight bytes with HDF5's end of the file, by version of HDF5's superblock."""
 MAX_CHECKSUM_TEXT_BYTES = 100_000
-"""Maximum size, in bytes, of the text with the checksum and the byte ranges that the checksum omits."""
+"""Maximum size, in bytes, of the checksum's text at the end of a file: the checksum, and the byte ranges that
+it does not cover."""
 BYTES_PER_READ = 1 << 20
 """Number of bytes per read of a file, which bounds the memory."""
 MAX_CHECKSUMMED_VARIABLE_BYTES = 1 << 16

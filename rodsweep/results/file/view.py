@@ -158,13 +158,14 @@ class ResultView:
         return status_sentences_in(self.attributes)
 
     def flattened_by_point(self, name: str) -> np.ndarray:
-        """Variable `name` with all points flattened to the first dimension, (points, ...)."""
+        """Variable `name` as an array (points, ...), with all dimensions of the points flattened to the first
+        dimension."""
         values = self.variables[name]
         return values.reshape(-1, *values.shape[self.variables["status"].ndim :])
 
     def point_values(self, index: int) -> dict[str, np.ndarray]:
-        """Values of every variable of points at a flat index, by name, with the shape of the variable's extra
-        dimensions."""
+        """Values at the point with the flat index `index`, by name, of every variable that has a value at
+        each point; the shape is that of the variable's other dimensions."""
         shape = self.variables["status"].shape
         names = (name for name, values in self.variables.items() if values.shape[: len(shape)] == shape)
         return {name: self.flattened_by_point(name)[index] for name in names}

@@ -1,4 +1,4 @@
-"""Layout of the task thresholds, and variables of the crossings along a line, which other tasks use as
+"""Layout of the task thresholds, and variables of the crossings along one parameter, which other tasks use as
 well."""
 
 from typing import Any
@@ -51,7 +51,7 @@ CROSSING_MEANINGS = {
 }
 """Meaning of every kind of crossing, as the parameter grows, by word."""
 CROSSING_KINDS = tuple(CROSSING_MEANINGS)
-"""Names of the kinds of crossings; the file stores the position in this list."""
+"""Names of the kinds of crossings; the file stores a kind as its index in this tuple."""
 HOPF_CROSSING_CODES = tuple(map(CROSSING_KINDS.index, ("hopf", "hopf_reverse", "restabilization")))
 """Stored numbers of the kinds of crossings that are Hopf points, at which the stability of the straight rod
 may change."""
@@ -100,8 +100,8 @@ def search_variables(line_parameter: str, position_name: str) -> tuple[Variable,
 
 
 CROSSING_LIST_REUSE_RULE = ReuseRule(lambda records, before: records["crossing_count"] <= before)
-"""Rule for the maximum number of stored crossings; a stored list that is not full already has all
-crossings."""
+"""Rule by which a run with a larger maximum number of stored crossings reuses earlier results: a list that
+has at most the earlier maximum number of crossings is complete."""
 REUSE_RULES_OF_INCREASED_OPTIONS = {"crossings": CROSSING_LIST_REUSE_RULE, "certify": NEW_SOLVE_RULE}
 
 

@@ -1,10 +1,10 @@
 """Validity of the model at each point of an arm's sweep, from the size of the effects that the model
 neglects.
 
-The effects depend on the rate of the motion. Depending on the task, the rate is the frequency of the first
-Hopf point, of the leading oscillating mode, of the cycle, or of the mode that decays to no cycle. If nothing
-oscillates, only compression and weight are tested. If the solver may have missed an unstable mode
-or a cycle, the validity is not known, unless compression or weight exceeds its limit.
+The effects depend on the rate of the motion: the frequency of the first Hopf point, of the leading
+oscillating mode, of the cycle, or of the mode with which an arm without a cycle decays, depending on the
+task. If nothing oscillates, only compression and weight are tested. If the solver may have missed an unstable
+mode or a cycle, the validity is unknown, unless compression or weight exceeds its limit.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -40,8 +40,7 @@ STATUSES_TREATED_AS_REST: dict[str, tuple[str, ...]] = {
     "thresholds": ("accuracy_not_reached", "list_full"),
     "phase_diagram": ("accuracy_not_reached", "special_undecided", "special_full"),
 }
-"""Unsuccessful statuses, by task, for which an arm without a stored Hopf point is nevertheless treated as at
-rest."""
+"""Unsuccessful statuses, by task, with which an arm without a stored Hopf point is nevertheless at rest."""
 DIAGRAM_CLASSES_WITH_POSSIBLE_FLUTTER = [
     value for value, name in STABILITY_CLASSES if name in ("flutter", "undecided")
 ]
@@ -62,11 +61,11 @@ class ArmMotion:
     amplitude: Array | float = LARGE_AMPLITUDE
     is_cycle: bool = False
     may_be_missed: NDArray[np.bool_] | bool = False
-    """Whether each point may have a motion that the solver did not find, (n,)."""
+    """Whether the solver may have missed a motion at each of the n points, (n,), or at all."""
 
 
 def _motion_of_modes(record: ValuesByVariable) -> ArmMotion:
-    """Motion of the oscillating mode with the largest growth rate; frequency NaN if no mode oscillates."""
+    """Motion of the fastest growing mode among those that oscillate; frequency NaN if none does."""
     frequency = np.abs(record["frequency"])
     first_oscillating = np.argmax(frequency > 0, axis=-1, keepdims=True)  # 0 if no mode oscillates
     leading = np.take_along_axis(frequency, first_oscillating, axis=-1)[..., 0]
@@ -74,8 +73,8 @@ def _motion_of_modes(record: ValuesByVariable) -> ArmMotion:
 
 
 def _motion_at_hopf_point_function(F_name: str) -> Callable[[ValuesByVariable], ArmMotion]:
-    """Function from a record to the motion at the first Hopf point; frequency and F are NaN without a Hopf
-    point. F_name: variable with the forces of the crossings."""
+    """Function from the variables of points to the motion at their first Hopf point; frequency and F are NaN
+    without a Hopf point. F_name: name of the variable with the forces of the crossings."""
 
     def motion(record: ValuesByVariable) -> ArmMotion:
         is_hopf = np.isin(record["crossing_kind"], HOPF_CROSSING_CODES)
@@ -92,7 +91,7 @@ def _motion_at_hopf_point_function(F_name: str) -> Callable[[ValuesByVariable], 
 
 
 def _motion_of_row(record: ValuesByVariable) -> ArmMotion:
-    """Motion at the first Hopf point of a row. may_be_missed: whether rods of the row may flutter."""
+    """Motion at the first Hopf point of a row. may_be_missed: whether a rod of the row may flutter."""
     has_flutter = np.any(np.isin(record["class"], DIAGRAM_CLASSES_WITH_POSSIBLE_FLUTTER), axis=-1)
     return replace(_motion_at_hopf_point_function("crossing_at")(record), may_be_missed=has_flutter)
 
@@ -141,15 +140,15 @@ class ArmValidity:
         self.task = config.task
         at_rest = STATUSES_TREATED_AS_REST.get(self.task, ())
         self.searched_statuses = [int(each) for each in statuses if each.succeeded or each.name in at_rest]
-        """Values of the statuses at which the solver missed no motion."""
+        """Stored values of the statuses with which the solver is known to have missed no motion."""
         sections = [axis.size for name, axis in self.section.quantity_axes.items() if name in NON_LOAD_KEYS]
         self.points_per_arm = points.count // int(np.prod(sections)) if points.arm_axes else points.count
         """Number of consecutive points with the same arm."""
         self.arm_by_number = lru_cache(CACHED_ARM_COUNT)(_arm_by_number_function(self.section))
-        """Function from a number to the arm with this number; caches the latest arms."""
+        """Function from the number of an arm (`_arm_by_number_function`) to the arm; caches the last arms."""
 
     def variables_of_points(self, record: ValuesByVariable, index: int | NDArray[np.int64]) -> dict[str, Any]:
-        """The VALIDITY_VARIABLES for one point, or for n points of one arm, (n,).
+        """The VALIDITY_VARIABLES for one point, or for n points with the same arm, (n,).
 
         record: variables of the points, (n, ...). index: index of the point, or indices, (n,).
         """
@@ -159,8 +158,8 @@ class ArmValidity:
         return self._validity_variables(arm, replace(motion, may_be_missed=may_be_missed), index)
 
     def variables_at_rest(self) -> dict[str, Array]:
-        """The VALIDITY_VARIABLES, (n,), at the n points whose arm is slender enough for the rod model, as if
-        the arms did not move."""
+        """The VALIDITY_VARIABLES, as if the arms did not move, (n,), at the n points whose arm is slender
+        enough for the rod model, in the order of the points."""
         parts = []
         for start in range(0, self.points.count, self.points_per_arm):
             indices = np.arange(start, start + self.points_per_arm)
@@ -209,8 +208,8 @@ class ArmValidity:
     def _force_times_arm_over_given_k1(
         self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]
     ) -> Array:
-        """F, multiplied by (arm's k1)/(k1 in the config) if the config gives k1 in addition to the arm; NaN
-        if the arm has no load. index: index of the point, or indices, (n,)."""
+        """F (k1 of the arm)/(k1 in the config) if the config gives k1 in addition to the arm, so that F/k1 is
+        kept, else F; NaN if the arm has no load. index: index of the point, or indices, (n,)."""
         k1 = self._parameter_values("k1", index)
         F = self._parameter_values("F", index) if "F" in self.points.names else motion.F
         if F is None or k1 is None:
@@ -219,9 +218,9 @@ class ArmValidity:
         return np.asarray(F) * (arm.k1 / k1)
 
     def _force_of_equal_base_compression(self, F: Array, index: int | NDArray[np.int64]) -> Array:
-        """The force that would compress the base as much as F compresses the weakest section; NaN for rubber,
-        whose constitutive law includes large compression. F, index: forces, and indices of their points, as
-        in `variables_of_points`."""
+        """The force that compresses the section at the base as much as F compresses the weakest section; NaN
+        for rubber, whose law includes large compression. F: forces. index: of their point, or of each,
+        (n,)."""
         material = self.points.material_of(int(np.ravel(index)[0]))
         if material.law != LINEAR_CONSTITUTIVE_LAW.law_name:
             return np.full(np.shape(F), np.nan)

@@ -1,7 +1,8 @@
 """Conversion of the curves and cycles of a phase diagram into variables of the result file.
 
-`rodsweep.results.layouts` declares the variables. In every function, the argument `plane` is a pair of names:
-(parameter that varies along each row, parameter that differs between rows).
+`rodsweep.results.layouts` declares the variables. A row of the diagram contains the rods that differ only in
+its first parameter. In every function, `plane` is the pair of names (first parameter, parameter that differs
+between rows).
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -37,8 +38,8 @@ if TYPE_CHECKING:
 def fold_curve_extremum_values(
     traced: "TracedCurves[SpecialPointCurve]", plane: tuple[str, str]
 ) -> list[FilledVariable]:
-    """Variables of the located extrema of the row parameter along the curves `traced`, and number of others;
-    [] without extrema. plane: (parameter along a row, parameter that differs between rows)."""
+    """Variables of the points at which the parameter that differs between rows is extremal along the curves
+    `traced`, and number of such points that were not located; [] if there are none. plane: see the module."""
     points = [(number, p) for number, curve in enumerate(traced.curves, 1) for p in curve.points]
     rows = [
         (number, p.parameter_value, p.row_parameter_value, p.error, row_error)
@@ -56,7 +57,8 @@ def boundary_curve_values(
     traced: "TracedCurves[BoundaryCurve]", plane: tuple[str, str], **limit_values: Any
 ) -> list[FilledVariable]:
     """Variables of the boundary curves and of their folds. plane: (parameter along a row, parameter that
-    differs between rows). limit_values: values of the variables on the partial beam limit, by name."""
+    differs between rows). limit_values: values of the variables on the partial beam limit (k2 = inf, gamma3 =
+    0), by name."""
     points = []
     folds = []
     for number, curve in enumerate(traced.curves, 1):
@@ -154,8 +156,8 @@ def fold_and_torus_curve_values(
 
 
 def _named_values_and_point(point: Any, names: Sequence[str], **extra_values: Any) -> tuple[Any, ...]:
-    """Returns (object, point). The attributes of the object are the point's parameter values and errors,
-    under `names`, and the values in `extra_values`."""
+    """Returns (object, point). The attributes of the object are the parameter values of `point`, under
+    `names`, their errors, under `names` + "_error", and `extra_values`."""
     errors = {f"{name}_error": error for name, error in zip(names, point.parameter_errors, strict=True)}
     return SimpleNamespace(
         **dict(zip(names, point.parameter_values, strict=True)), **errors, **extra_values
@@ -165,10 +167,11 @@ def _named_values_and_point(point: Any, names: Sequence[str], **extra_values: An
 def _values_along_dimension(
     variables: Mapping[str, Variable], dimension: str, prefix: str, rows: Iterable[tuple[Any, ...]]
 ) -> dict[str, Any]:
-    """Values of the variables in `variables` that have the dimension `dimension` and whose names begin with
-    `prefix`.
+    """Lists of values, by name, of those `variables` that have the dimension `dimension` and names beginning
+    with `prefix`.
 
-    rows: one row for each item along the dimension, with the objects whose attributes are the values.
+    rows: for each item along the dimension, the objects with the values as attributes, named without the
+    prefix.
     """
     variables_of_dimension = [
         variable
@@ -187,10 +190,10 @@ def _variables_with_values(
 
 
 def _end_reasons(end_reasons: Sequence[int], point_count: int) -> list[dict[str, int]]:
-    """For each of the `point_count` points of a curve, the reasons why the curve starts or ends there; 0 if
-    the curve goes on.
+    """Reasons why a curve starts ("start") and ends ("end") at each of its points, as stored integers: 0
+    except at the first and the last point.
 
-    end_reasons: (reason at the first point, reason at the last point).
+    end_reasons: (reason at the first point, reason at the last point). point_count: number of points.
     """
     reasons = [{"start": 0, "end": 0} for _ in range(point_count)]
     reasons[0]["start"], reasons[-1]["end"] = end_reasons
@@ -220,9 +223,8 @@ def row_cycle_values(result: "CoexistenceRow", line_parameter: str) -> dict[str,
 
 def unstored_special_point_count(view: ResultView, finite: np.ndarray) -> int:
     """Number of special points that are not stored because the list of their row is full; no curve can start
-    at these points.
-
-    finite: whether the parameter value of each row is finite, (rows,).
+    at these points. finite: whether the value of the parameter that differs between rows is finite on each
+    row, (rows,).
     """
     stored_counts = np.count_nonzero(view.flattened_by_point("cycle_special_kind"), axis=1)
     lacking = view.variables["cycle_special_count"].ravel() - stored_counts
@@ -235,9 +237,9 @@ def with_ends_on_hopf_curves(
     criticalities: "Sequence[CurveCriticality]",
     unstored: int,
 ) -> "TracedCurves[SpecialPointCurve]":
-    """The curves in `traced`; an end at a generalised Hopf point is replaced by the point located on the Hopf
-    curve. criticalities: criticality along each boundary curve. unstored: number of special points that are
-    not stored, added to `untraced_seed_count`.
+    """The curves in `traced`, with every end at a generalised Hopf point replaced by the point located on the
+    Hopf curve. plane: plane of the diagram. criticalities: criticality along each boundary curve. unstored:
+    number of special points that are not stored; they count as untraced.
     """
     from ...solve.branch.special.special_curves import with_bautin_ends
 

@@ -2,8 +2,8 @@
 
 The forces are computed from the stored eigenvalues after all points are solved, and stored in the file for
 `show` and figures. The computation of one force takes about 30 us: 1 % of the time of spectra followed along
-lines of 512 forces, and 3 to 5 % along lines of 50 forces. An onset between forces far from each other takes
-up to 2 ms.
+lines of 512 forces, and 3 to 5 % along lines of 50 forces. An onset takes up to 2 ms if the neighbouring
+forces are far apart.
 """
 
 from collections.abc import Iterator, Mapping
@@ -22,7 +22,8 @@ from ...results.layouts.variables import FilledVariable
 from ...sweep.points.points import Points, lines_along
 
 MAX_POINTS_IN_MEMORY = 1 << 13
-"""Maximum number of points of a grid that are read at once to limit memory, except if one slice has more."""
+"""About the maximum number of points of a grid that are read at once, to limit memory. At least one value of
+the longest axis other than F is read, with all values of the other axes."""
 MAX_SPACING_TO_FORCE_RANGE_RATIO = 0.02
 """Two neighbouring forces are far from each other if their difference exceeds this share of the range of all
 forces."""
@@ -84,8 +85,9 @@ def _force_lines_of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[
 
 
 def _force_lines_of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
-    """For a list of points, yields each set of points that differ only in F. values: variables of the points
-    by name, shape (points, own dimensions), arrays or HDF5 datasets."""
+    """For a list of points, yields each group of points that differ only in F, sorted by F, as a `ForceLines`
+    with one line. values: variables of the points by name, shape (points, own dimensions), arrays or HDF5
+    datasets."""
     eigenvalues = (values["growth_rate"][...] + 1j * values["frequency"][...]).reshape(points.count, -1)
     unstable = values["unstable_count"][...].ravel()
     for line in lines_along(points.columns_by_name, "F"):
@@ -150,10 +152,10 @@ def _sign_changes(eigenvalues: Complex) -> NeighbourPairs:
 
 
 def _point_pairs_around_onset(F: Array, eigenvalues: Complex) -> NeighbourPairs:
-    """Pairs of neighbouring points between which two leading real eigenvalues can become a complex pair: the
-    leading eigenvalue is real at the first point and complex at the second. Between forces that are close to
-    each other, the second eigenvalue at the first point is real too; otherwise a complex pair overtakes a
-    real eigenvalue. F: forces, (n,). eigenvalues: eigenvalues, (lines, n, modes)."""
+    """Pairs of neighbouring points between which two leading real eigenvalues may become a complex pair: the
+    leading eigenvalue is real at the first point and complex at the second. The second eigenvalue at the
+    first point must be real too, if the forces are close; else a complex pair overtakes a real eigenvalue. F:
+    forces, (n,). eigenvalues: leading first, (lines, n, modes)."""
     if eigenvalues.shape[-1] < 2:
         return np.empty((0, 3), np.int64)
     is_real = eigenvalues[..., :2].imag == 0

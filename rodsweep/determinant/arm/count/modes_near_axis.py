@@ -1,7 +1,7 @@
 """Eigenvalues of an arm close to the imaginary axis, by Newton's method from points on the axis.
 
 With the dominant wave Phi (`dominant_wave`), D exp(-Phi) varies slowly on the axis, except near its zeros.
-Newton's method for this function, divided by the factors of the zeros found before, converges to a further
+Newton's method for this function, divided by w - w_k for every zero w_k found before, converges to a further
 zero if a zero is close to the starting point. It is not proved that all zeros close to the axis are found.
 """
 
@@ -49,9 +49,9 @@ NEAR_AXIS_SETTINGS = NearAxisSettings()
 
 
 def modes_near_axis(determinant: ArmDeterminant, max_frequency: float, known_w: Complex) -> Complex:
-    """The known eigenvalues, followed by further eigenvalues close to the imaginary axis with Im w up to
-    `max_frequency`, one of each conjugate pair, (n,); at most `NEAR_AXIS_SETTINGS.max_modes`. known_w:
-    eigenvalues found before, (m,). Raises FloatingPointError if no elements resolve the arm."""
+    """The known eigenvalues `known_w`, (m,), followed by the eigenvalues found close to the imaginary axis
+    with 0 < Im w <= `max_frequency`, in 1/tau2, one of each conjugate pair: (n,), n at most
+    `NEAR_AXIS_SETTINGS.max_modes`. Raises FloatingPointError if no elements resolve the arm."""
     eigenvalues = known_w[: NEAR_AXIS_SETTINGS.max_modes]
     height = NEAR_AXIS_SETTINGS.first_start_frequency
     while height < max_frequency:

@@ -1,4 +1,5 @@
-"""Elements of an arm with equal propagators: the elements of a segment whose coefficients are constant."""
+"""Numbering of the elements of an arm by their propagators. Neighbouring elements of a segment with constant
+coefficients have equal propagators, which are then computed once."""
 
 import numpy as np
 from numpy.typing import NDArray

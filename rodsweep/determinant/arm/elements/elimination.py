@@ -11,12 +11,12 @@ from .settings import ARM_ELEMENT_SETTINGS, MINOR_COUNT
 
 @compiled
 def fill_elimination_matrices(F: float, c3: Array, g: Array, Q: Array, eliminations: Array) -> None:
-    """Writes the matrix [M 1, M Q] of each lane's element into `eliminations`, (STAGES, 1 + STAGES, WIDTH),
-    once for each initial value. M is the inverse of the matrix 1 + F Q c3 Q g.
+    """Writes the matrix [M 1, M Q] of each element of a batch (lane) into `eliminations`, (STAGES, 1 +
+    STAGES, WIDTH), once for each initial value. M is the inverse of the matrix 1 + F Q c3 Q g.
 
-    M eliminates theta^m and y^m: M Q integrates the rates of theta^s and y^theta; M 1 is the contribution of
-    a start value of 1. Q: matrix of integrals from 0 to each Gauss point, (STAGES, STAGES). c3, g:
-    coefficients at the Gauss points times the length of the element, (STAGES, LANES).
+    M eliminates theta^m and y^m: M Q integrates the rates of theta^s and y^theta; M 1, 1: vector of ones, is
+    the contribution of a start value of 1. Q: matrix of integrals from 0 to each Gauss point, (STAGES,
+    STAGES). c3, g: coefficients at the Gauss points times the length of the element, (STAGES, LANES).
     """
     stages = ARM_ELEMENT_SETTINGS.stage_count
     integrands = np.empty((stages, ARM_ELEMENT_SETTINGS.lane_count * stages))
@@ -34,8 +34,9 @@ def fill_elimination_matrices(F: float, c3: Array, g: Array, Q: Array, eliminati
 
 @compiled_with_reordered_sums
 def _fill_load_integrands(F: float, c3: Array, g: Array, Q: Array, integrands: Array) -> None:
-    """Writes F c3 Q g of each lane's element into `integrands`, (STAGES, LANES * STAGES), the columns of one
-    lane after the other. Other arguments: as in `fill_elimination_matrices`."""
+    """Writes the matrix F c3 Q g, (STAGES, STAGES), of each element of a batch (lane) into `integrands`,
+    (STAGES, LANES * STAGES), one element's columns after the other. Other arguments: as in
+    `fill_elimination_matrices`."""
     for k in range(ARM_ELEMENT_SETTINGS.stage_count):
         for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
             for j in range(ARM_ELEMENT_SETTINGS.stage_count):

@@ -24,8 +24,9 @@ def modulus_sum_of_form_at_real_w(a: Array, C: Array, x: Array) -> float:
 
 @compiled_with_reordered_sums
 def modulus_sum_of_form(a: Array, C: Array, x: Array) -> float:
-    """The sum of |a_i| |C_ij| |x_j| for a propagator C, (2 or more, PROPAGATOR_LENGTH), and vectors a and x,
-    (2, MINOR_COUNT). |real| + |imaginary part| replaces each modulus: up to 2 sqrt(2) times too large."""
+    """Upper bound of the sum of |a_i| |C_ij| |x_j| for a propagator C, (2 or more, PROPAGATOR_LENGTH), and
+    vectors a and x, (2, MINOR_COUNT): |real part| + |imaginary part| replaces each modulus, so the bound is
+    at most 2 sqrt(2) times too large."""
     total = 0.0
     for j in range(MINOR_COUNT):
         column = 0.0
@@ -38,9 +39,9 @@ def modulus_sum_of_form(a: Array, C: Array, x: Array) -> float:
 
 @compiled_with_reordered_sums
 def modulus_sum_of_form_from_sizes(a: Array, sizes: Array, t: float, x: Array) -> float:
-    """The sum of |a_i| (sizes_0 + t sizes_1)_ij |x_j| for sizes of propagator entries, (2,
-    PROPAGATOR_LENGTH), and vectors a and x, (2, MINOR_COUNT). |real part| + |imaginary part| replaces the
-    moduli of a_i and x_j."""
+    """Upper bound of the sum of |a_i| B_ij |x_j| with bounds B = sizes[0] + t sizes[1] of the moduli of the
+    entries of a propagator; sizes: (2, PROPAGATOR_LENGTH). a, x: vectors, (2, MINOR_COUNT); |real part| +
+    |imaginary part| replaces the moduli of their entries."""
     total = 0.0
     for j in range(MINOR_COUNT):
         column = 0.0
@@ -53,9 +54,10 @@ def modulus_sum_of_form_from_sizes(a: Array, sizes: Array, t: float, x: Array) -
 
 @compiled
 def minor_sm_modulus_sum(C: Array, x: Array) -> float:
-    """Sum of the moduli of all terms of C x that add up to the minor s^m at the end of an element. C:
-    propagator, (2 or more, PROPAGATOR_LENGTH). x: minors, (2, MINOR_COUNT). Near a root of D the terms
-    cancel, and the rounding error of D is relative to their moduli, not to s^m."""
+    """Sum of the moduli of the products of entries of C and x that add up to the minor s^m at the end of an
+    element. Near a root of D these products cancel, and the rounding error of D is relative to this sum, not
+    to |s^m|. C: propagator, (2 or more, PROPAGATOR_LENGTH). x: minors at the start of the element, (2,
+    MINOR_COUNT)."""
     total = 0.0
     for j in range(MINOR_COUNT):
         entry = complex(C[RE, MINOR_COUNT * j + SM], C[IM, MINOR_COUNT * j + SM])

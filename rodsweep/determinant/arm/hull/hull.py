@@ -90,7 +90,7 @@ class HullSamples(NamedTuple):
 
 
 def _hull_samples(rods: Sequence[Rod]) -> HullSamples:
-    """The `HullSamples` of arms of one material."""
+    """The `HullSamples` of arms of one material, one for each of `rods`."""
     material = rods[0].material
     lengths, u, end_to_end_u = _lengths_and_chebyshev_points(material)
     F = np.array([rod.F for rod in rods], float)
@@ -105,10 +105,10 @@ def _hull_samples(rods: Sequence[Rod]) -> HullSamples:
 
 @lru_cache(maxsize=HULL_SETTINGS.max_cached_materials)
 def _lengths_and_chebyshev_points(material: RodMaterial) -> tuple[Array, Array, Array]:
-    """Returns (lengths, u, end_to_end_u). lengths: distances of the first from the last Chebyshev point of
-    each interval between breaks of the profile, (pieces,). u: the Chebyshev points, (pieces, points).
-    end_to_end_u: Chebyshev points of intervals with these lengths that follow each other without gaps,
-    (pieces * points,)."""
+    """Returns (lengths, u, end_to_end_u). u: Chebyshev points in each interval between breaks of the profile,
+    (pieces, points). lengths: distance from the first to the last of them, a little shorter than the
+    interval, (pieces,). end_to_end_u: the same points after the intervals are moved together, so that the
+    last point of an interval coincides with the first point of the next, (pieces * points,)."""
     x = (1 - 2 * HULL_SETTINGS.end_point_distance_over_interval) * _chebyshev_matrices().points
     lengths = np.diff(material.breaks)
     u = material.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
@@ -159,8 +159,8 @@ def _smallest_common_region(
     (inf, 0) if no bound is found.
 
     F: forces, (n,). lengths: lengths of the intervals between breaks, (pieces,). coefficients: (6, n, pieces,
-    points). averaged: constants (a, c) of trial regions from averaged weights, (n, trials, 2). max_c: bound
-    of c.
+    points). averaged: constants (a, c) of trial regions from averaged weights, (n, trials, 2). max_c: regions
+    with c >= max_c are not used.
     """
     nu, c2, c3, gamma2, gamma3, g = coefficients
     max_weighted_force = 0.0

@@ -25,7 +25,8 @@ class HullSettings(KernelConstants):
     min_one_minus_c: float = 0.1
     """Hulls with 1 - c below this number are not used: they are too large to be useful."""
     c_at_doubled_measure: float = 0.15
-    """The smallest hull has the least a^2 (1 + (c/c_at_doubled_measure)^4), which is 2 a^2 at this c."""
+    """Hulls are compared by the measure a^2 (1 + (c/c_at_doubled_measure)^4): this c doubles the measure. The
+    smallest hull has the least measure."""
     constant_weight_count: int = 41
     """Number of constant weights alpha tried, from smallest to largest |g/nu| along the arm, besides 1."""
     min_constant_weight: float = 1e-3
@@ -35,7 +36,8 @@ class HullSettings(KernelConstants):
     max_cached_materials: int = 16
     """Maximum number of materials whose points are cached: it bounds the memory and changes no number."""
     load_term_factors: tuple[float, ...] = (0.0, 0.5, 1.0)
-    """Factors of |F| sqrt(c2 c3 gamma3/gamma2) in the varying weights alpha that are tried."""
+    """The varying weights alpha = g/(nu + f |F| sqrt(c2 c3 gamma3/gamma2)) are tried for these values of
+    f."""
 
 
 HULL_SETTINGS = HullSettings()
@@ -47,9 +49,9 @@ class EigenvalueHull(NamedTuple):
     displacements, see `rodsweep.determinant.arm.hull.hull`. a = inf if no bound exists."""
 
     a: float
-    """Largest growth rate divided by n, without damping."""
+    """Coefficient of n in the bounds of Re w and |Im w|, in 1/sqrt(tau2); inf without a bound."""
     c: float
-    """c = 1 - (damping rate)/n^2."""
+    """Coefficient of n^2 in the bound of |Im w|; the damping in the bound of Re w is (1 - c) n^2."""
 
     def box(self, depth: float = 0.0) -> tuple[float, float]:
         """Bounds (max Re w, max |Im w|), in 1/tau2, of the part Re w >= -depth of the hull, depth >= 0; inf

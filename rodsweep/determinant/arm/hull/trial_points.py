@@ -45,10 +45,11 @@ class GridPositions(NamedTuple):
 
 
 class TrialPoints(NamedTuple):
-    """Points of an arm at which the weights of one half-width h are evaluated. u: positions of the points
-    from clamp to tip, (n,). arm_point_indices: index of each point among the points of the arm, -1 for an
-    added point, (n,). coefficients: `LocalCoefficients`, (6, n). load_terms: |F| sqrt(c2 c3 gamma3/gamma2),
-    (n,). window_starts, window_ends: positions of u - h and of u + h in u."""
+    """Points of an arm at which the weights with one half-width h of the averaging window are evaluated. u:
+    positions of the points from clamp to tip, (n,). arm_point_indices: index of each point among the points
+    of the arm, -1 for an added point, (n,). coefficients: `LocalCoefficients`, (6, n). load_terms: |F|
+    sqrt(c2 c3 gamma3/gamma2), (n,). window_starts, window_ends: between which of these n points u - h and u +
+    h lie."""
 
     u: Array
     arm_point_indices: NDArray[np.int64]
@@ -88,9 +89,9 @@ def trial_points_for_half_width(
 
 @compiled
 def _with_points_where_window_ends_jump(u: Array, h: float) -> tuple[Array, NDArray[np.int64]]:
-    """Returns (points, sources). points: the points u of an arm, (points,), and one point on either side of
-    each place at the distance h from a jump, sorted. sources: index of each point in u, -1 for an added
-    point."""
+    """Returns (points, sources). points: the points u of an arm, (points,), and the added points, sorted. At
+    each place at the distance h from a jump, where the averaging window of half-width h ends at the jump, one
+    point is added on either side. sources: index of each point in u, -1 for an added point."""
     # Each jump adds at most four points: two window ends, with a point on either side of each.
     added: Array = np.empty(4 * len(u))
     count = 0

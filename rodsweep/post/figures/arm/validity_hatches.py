@@ -41,7 +41,8 @@ def _hatch_and_note(
     figure: Figure, views: Sequence[ResultView], validities: Sequence[np.ndarray], validity: Validity
 ) -> str:
     """Hatches the points of a figure at which the model has the validity `validity`, and returns the note for
-    the title; empty if there is no such point. validities: validities of all points of each file."""
+    the title; empty if there is no such point. views: results in the figure. validities: validity of the
+    model at all points of each result."""
     outside = [np.asarray(values == validity) for values in validities]
     number, count = (sum(map(counting, outside)) for counting in (np.count_nonzero, np.size))
     if not number:

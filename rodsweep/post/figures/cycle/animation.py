@@ -43,7 +43,7 @@ PERIOD_DIGITS = 3
 """Number of significant digits of the period. The running time is printed with as many decimals as the
 period."""
 RELATIVE_TIME_TEXT_HEIGHT = 0.08
-"""Height of the line with the running time, as a fraction of the panel's height."""
+"""Height of the text line with the running time above the moving arm, as a fraction of the panel's height."""
 MAX_EARLIER_SHAPE_AGE = 0.2
 """Age of the oldest earlier shape that is drawn, in periods."""
 DPI = 100

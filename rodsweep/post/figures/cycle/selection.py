@@ -29,8 +29,8 @@ TRANSIENT_VARIABLE_NAMES = ("transient_time", "transient_x", "transient_y")
 CONFIG_OPTION_BY_VARIABLE = dict.fromkeys(SHAPE_VARIABLE_NAMES, "shapes") | dict.fromkeys(
     TRANSIENT_VARIABLE_NAMES, "transient"
 )
-"""Option of the config with which the task stores a variable. Other variables over a period are stored with
-the option `samples`."""
+"""Name of the option of limit_cycle that, if positive, makes the task store a variable, by name of the
+variable. Variables over a period that are not listed are stored with the option `samples`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,8 +51,8 @@ class StoredCycle:
 
     @property
     def tau1(self) -> float:
-        """Short time scale tau1 = gamma3/k2, in tau2; 0 for a rod without this time scale, and for an arm in
-        SI units."""
+        """Short time scale tau1 = gamma3/k2, in tau2. 0 if gamma3 = 0 or k2 = inf, and for an arm, whose
+        values are in SI units."""
         if self.units.in_si:
             return 0.0
         return self.parameters["gamma3"] / self.parameters["k2"]
@@ -147,10 +147,10 @@ def _require_variables(view: ResultView, variable_names: Sequence[str]) -> None:
 def _selected_cycles(
     view: ResultView, points: Sequence[int], is_drawable: NDArray[np.bool_], noun: str, complaint: str
 ) -> CycleSelection:
-    """Selection of the points with the numbers `points`, or of the first drawable points if `points` is
-    empty. is_drawable: mask, (points,). noun: word for a drawable point, for messages. complaint: message on
-    a chosen point that is not drawable, with `{status}`. Raises InputError if no point, or a chosen point, is
-    not drawable."""
+    """Selection of the points with the numbers `points` or, if `points` is empty, of the first points that
+    can be drawn. is_drawable: whether each point can be drawn, (points,). noun: word for what is drawn, for
+    messages. complaint: message on a chosen point that cannot be drawn, with `{status}`. Raises InputError if
+    a chosen point, or no point at all, can be drawn."""
     statuses = view.status_names
     status_words = [word.replace("_", " ") for word in list_of(statuses)]
     if len(points) > MAX_CYCLES:

@@ -192,11 +192,11 @@ def threshold_symbol_and_force(threshold: LocatedThreshold) -> str:
 def mark_thresholds(
     axes: Axes, view: ResultView, name: str, has_own_legend: bool = True
 ) -> list[LocatedThreshold]:
-    """Shades the range in which the straight rod is unstable and, if the parameter `name` is F, draws lines
-    at the located thresholds. Returns these thresholds; an empty list for any other parameter.
+    """Shades the range in which the straight rod is unstable. If the parameter `name` is F, also draws lines
+    at the located thresholds and returns them; otherwise returns an empty list.
 
     Thresholds are onsets of oscillation, and forces at which the stability of the straight rod changes.
-    has_own_legend: whether the legend is of this panel alone, with the forces at the thresholds.
+    has_own_legend: whether this panel has its own legend, whose entries then contain the forces.
     """
     x = view.parameter_values[name]
     unstable = view.variables["unstable_count"].reshape(-1) > 0

@@ -41,8 +41,8 @@ STABLE_STATE_COLOURS = {
     "undecided": CLASS_COLOURS["undecided"],
     "crushed": CLASS_COLOURS["crushed"],
 }
-"""Colours of the words of `stable_states`. The colour of "both" lies between the colours of the two
-states."""
+"""Colours of the values of the variable `stable_states`, by word. The colour of "both" lies between the
+colours of "straight" and "cycle"."""
 LEGEND_ENTRIES = {
     "missing": "not computed",
     "monotone": "monotone decay",
@@ -71,7 +71,8 @@ class Palette:
 
     @property
     def colour_keywords(self) -> dict[str, Any]:
-        """Keywords for matplotlib with which an array of the integers is drawn in the colours."""
+        """Keywords with which matplotlib draws an array of the variable's integers in the colours of their
+        words."""
         numbers = [number for number, _ in self.words]
         return {
             "cmap": ListedColormap([self.colours[word] for _, word in self.words]),
@@ -94,8 +95,8 @@ STABLE_STATE_PALETTE = Palette("stable_states", STABLE_STATES, STABLE_STATE_COLO
 
 
 HOPF_OF_FURTHER_PAIR = "later"
-"""Key in CROSSING_MARKS of a Hopf point at which a further pair of modes of an unstable rod becomes
-unstable."""
+"""Key in CROSSING_MARKS of a Hopf point at which a rod that is already unstable becomes unstable to a further
+pair of modes."""
 CROSSING_MARKS = {
     "onset": (style.BLUE, "o", rf"onset ${style.TEX_SYMBOLS['F']}_*$"),
     "hopf": (style.VERMILION, "s", rf"Hopf ${style.TEX_SYMBOLS['F']}_{{**}}$"),

@@ -29,18 +29,19 @@ STABLE_CLASS_ABOVE_CROSSING = {
     "real_leads": "monotone",
     "pair_leads": "oscillatory",
 }
-"""Class of a stable rod at forces above a crossing, by kind of the crossing."""
+"""Class of a rod without unstable modes at forces just above a crossing, by kind of the crossing."""
 
 
 def classes_between_crossings(
     view: ResultView, parameters: PlaneParameters
 ) -> tuple[Array, Array, NDArray[np.intp]]:
-    """Returns (x, y, classes), (n,) each, of the midpoints between neighbouring crossings on rows, and of
-    the midpoints of the two outer parts, which end at the ends of the row or where the force crushes the rod.
+    """Returns (x, y, classes), (n,) each: points of a phase diagram whose stability class follows from the
+    crossings on their row, even where the crossings are close. They are the midpoints between neighbouring
+    crossings, and between the outermost crossings and the ends of the row or the force that crushes the rod.
 
-    x: values of the parameter along a row. y: values of the parameter that is constant on a row. The class of
-    a midpoint is known even if the crossings are close. The first part has a midpoint only before an onset of
-    a stable rod, and the last part only if all crossings are stored. Rows at infinity are left out.
+    x: values of the parameter along a row. y: values of the parameter that is constant on a row. The part
+    before the first crossing has a point only if this crossing is an onset of a stable rod, the part behind
+    the last stored crossing only if all crossings are stored. Rows with an infinite y are left out.
     """
     names = ("crossing_kind", "unstable_after", "crossing_at", "crossing_count", "open_from")
     kinds, unstable_counts, positions, counts, undecided_from = map(view.flattened_by_point, names)
@@ -70,8 +71,8 @@ def classes_between_crossings(
 def _uncrushed_range_of_row(
     view: ResultView, material: RodMaterial, parameters: PlaneParameters, index: int
 ) -> tuple[float, float]:
-    """Returns (first, last) value, on the row with the index `index`, at which the force does not crush the
-    rod."""
+    """Returns (first, last): the interval of the parameter along the row with the index `index` in which the
+    force does not crush the rod."""
     rod = {name: float(column[index]) for name, column in view.point_columns.items()}
     row_start, row_end = list_of(view.variables[parameters.line_parameter][[0, -1]])
     return uncrushed_interval(material, rod, (parameters.line_parameter, row_start, row_end))

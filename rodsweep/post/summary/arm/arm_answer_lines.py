@@ -125,7 +125,8 @@ def _threshold_lines(arms: PointSelection) -> TextLines:
 def _flutter_lines(
     arms: PointSelection, loads: np.ndarray, ends: np.ndarray, frequency: np.ndarray
 ) -> TextLines:
-    """Lines about flutter. loads: flutter loads. ends: largest searched loads. frequency: in Hz. All (n,)."""
+    """Lines about flutter: loads (flutter loads) and ends (largest searched loads) in SI, frequency in Hz;
+    all (n,)."""
     flutter_count = int(np.isfinite(loads).sum())
     search = f" up to {si_load_range_text(arms, ends)}" if np.isfinite(ends).any() else ""
     if not flutter_count:
@@ -193,8 +194,8 @@ def _cycle_lines(arms: PointSelection) -> TextLines:
 
 
 def _drag_outcome_line(arms: PointSelection) -> TextLines:
-    """Line with the numbers of combinations of arm and load that beat with all drags, only with some, or
-    never. Empty list if drag is not varied or an outcome is undecided."""
+    """Line that counts the combinations of arm and load that beat with every drag, with some, or with none.
+    Empty list if drag is not varied or an outcome is undecided."""
     arm_indices = arm_index_apart_from_drag(arms.view)
     if arm_indices is None or arms.with_status("cycle", "straight").count < arms.count:
         return []
