@@ -81,8 +81,8 @@ def sweep(
 
 
 def _warn_of_failed_points(indices: Sequence[int], error: Exception) -> None:
-    """Issues a RuntimeWarning with the traceback of an unforeseen exception at the points with flat
-    `indices`."""
+    """Issues a RuntimeWarning with the traceback of the exception `error`, a bug of rodsweep, which made the
+    points with the flat indices `indices` fail."""
     first = indices[0] + 1
     last_number = indices[-1] + 1
     points_text = f"point {first}" if first == last_number else f"points {first} to {last_number}"

@@ -26,8 +26,8 @@ from .study import Measurement, TimedMethod
 PEERS_PACKAGE_NAME = "benchmarks"
 """Name of the folder of peers in a checkout, and name under which its package is imported from any folder."""
 RODSWEEP_CHECKOUT_FOLDER = Path(__file__).parents[2]
-"""Root folder of the checkout from which rodsweep runs; without a checkout, the parent of the installed
-package."""
+"""Root folder of the checkout from which rodsweep runs. If rodsweep is installed without a checkout, the
+folder that contains the package."""
 PEER_PHRASES_BY_STUDY = {
     "spectrum": "LAPACK, ARPACK and Chebyshev collocation",
     "thresholds": "grids and root finding with SciPy, AUTO-07p and PyCont-Lite",
@@ -43,8 +43,8 @@ class PeerContribution:
     """Contribution of the peers to one study."""
 
     contenders_by_race: Mapping[str, Sequence[TimedMethod]] = field(default_factory=dict)
-    """Methods of each race, by the name of the race, with settings from the coarsest to the finest; the study
-    defines the races and their cases."""
+    """Methods of the peers that take part in each race of the study, by name of the race; the same method
+    with several settings, such as tolerances, from the coarsest to the finest."""
     section_functions: Sequence[MakePeerSection] = ()
     """Functions that make further comparisons, in addition to the races of the study."""
     contender_notes: Sequence[str] = ()

@@ -17,7 +17,7 @@ from typing import Any
 
 
 class _CallablePackage(ModuleType):
-    """Class of this package, callable: `rs.sweep(...)` calls `rodsweep.api.sweeping.sweep(...)`."""
+    """Module class of this package, callable: `rs.sweep(...)` calls `rodsweep.api.sweeping.sweep(...)`."""
 
     @property
     def __wrapped__(self) -> Any:

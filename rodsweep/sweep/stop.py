@@ -99,13 +99,14 @@ class SingleRankCommunication:
 
 
 class SolverReportListener:
-    """Receives the solvers' reports on a rank: polls messages, forwards progress, ends a solve on a stop
-    request. A new listener is created for every item."""
+    """Listens to the reports of a solver on a rank: polls MPI messages, forwards the progress, and ends the
+    solve after a stop request. A new listener is created for every point or other work item of the sweep."""
 
     def __init__(
         self, communication: RankCommunication, stop: StopRequest, item_label: Callable[[], str] = str
     ):
-        """item_label: function that returns a description of the item."""
+        """item_label: function that returns a text for the solved work item, which precedes the solver's
+        progress text."""
         self.communication = communication
         self.stop = stop
         self.item_label = item_label

@@ -140,8 +140,8 @@ class Answer:
         raise AttributeError(f"this answer has no {name!r}; it has {', '.join(self._attribute_names())}")
 
     def _list_values(self, table: str, name: str) -> np.ndarray:
-        """Values of the variable or coordinate `name` of the list `table`, with one entry per item of the
-        list."""
+        """Values of the variable or coordinate `name` of the list with the name `table`, one entry per item
+        of the list."""
         dimensions = self._tables.contents.dimensions_of_list(table)
         (column,) = (column for column in self._tables.list_columns(table) if column.name == name)
         if name in dimensions[1:]:

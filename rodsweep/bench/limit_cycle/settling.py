@@ -56,7 +56,7 @@ class SettlingMethod:
 
     @property
     def reaches_cycle(self) -> bool:
-        """Whether the method reaches the cycle."""
+        """Whether the method reaches the cycle; an integration does if its motion becomes periodic."""
         return isfinite(self.tip_return_count)
 
     def row(self, timed: TimedRuns) -> dict[str, str | float]:
@@ -88,8 +88,8 @@ def compare_settling(reference: ReferenceCycle, contenders: Sequence[TimedMethod
 
 
 def _solve_cycle_method(force: float, periods: float, error: float) -> SettlingMethod:
-    """The method `solve_cycle` at the force F = `force`. periods: number of returns of the tip while the
-    motion is integrated. error: the larger of the relative errors of the period and of the largest tip y."""
+    """The method `solve_cycle` at F = `force`. periods: number of returns of the tip over which `solve_cycle`
+    integrated the motion. error: the larger of the relative errors of the period and of the largest tip y."""
     return SettlingMethod(
         force, SOLVE_CYCLE_METHOD_NAME, "", periods, error, partial(solve_cycle_at_force, force)
     )
@@ -118,10 +118,10 @@ def _cycle_error(reference: ReferenceCycle, period: float, height: float) -> flo
 
 
 def _integrate_until_periodic(reference: ReferenceCycle, contenders: Sequence[TimedMethod]) -> SettlingMethod:
-    """The integration at the loosest tolerance at which two successive returns agree within
-    PERIODICITY_TOLERANCE, and period and largest tip y have at most this relative error. If no tolerance
-    suffices, a method whose `reaches_cycle` is False. contenders: contenders of one integrator, from the
-    loosest tolerance."""
+    """The integration to a periodic motion with the loosest tolerance for which two successive returns agree
+    within PERIODICITY_TOLERANCE, and period and largest tip y have at most this relative error. If no
+    tolerance suffices, a method whose `reaches_cycle` is False. contenders: runs of one integrator with
+    different tolerances, from the loosest to the tightest."""
     start = leading_mode(reference.system).state(START_DEFLECTION)
     task = IntegrationTask(reference.system, start, SETTLING_PERIOD_COUNT * reference.period)
     name = SETTLING_METHOD_NAME_PREFIX + contenders[0].method
@@ -146,7 +146,7 @@ def _integrate_until_periodic(reference: ReferenceCycle, contenders: Sequence[Ti
 
 
 def _methods_near_hopf(settled_contenders: Sequence[TimedMethod]) -> list[SettlingMethod]:
-    """Methods that reach the cycle near the Hopf point: `solve_cycle`, and the integrators
+    """Methods that reach the cycle near the Hopf point: `solve_cycle`, and integrations by the contenders
     `settled_contenders`. The number of periods until an integrated motion is periodic is estimated from the
     largest Floquet multiplier."""
     cycle = solve_cycle_at_force(NEAR_HOPF_F)

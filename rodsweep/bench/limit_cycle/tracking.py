@@ -58,8 +58,8 @@ on the cycle."""
 TARGET_ERROR = 1e-6
 """Error at which integrators are compared: the larger of the relative errors of period and amplitude."""
 PERIODICITY_TOLERANCE = 1e-7
-"""Relative accuracy requested from `solve_cycle`. An integrated motion is periodic if the relative distance
-between the states at two successive returns is at most this number."""
+"""Relative accuracy requested from `solve_cycle`. An integrated motion is periodic if the states at two
+successive returns of the tip (see `TipAngleReturns`) differ by at most this relative distance."""
 START_DEFLECTION = 0.1
 """Tip deflection, in L, of the start from which the methods reach the cycle."""
 MAX_TIP_RETURNS = 300

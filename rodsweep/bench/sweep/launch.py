@@ -1,7 +1,7 @@
 """Runs of sweeps started as by a user: time, memory of each rank, and size of the files.
 
-The caller gives the first arguments of the measured command. Further arguments are appended: a directory, in
-which every rank writes its peak memory in bytes into a file FIRST_RANK_MEMORY_FILE_PREFIX-PID or
+The measured command begins with arguments given by the caller. The module appends: a directory, in which
+every rank writes its peak memory in bytes into a file FIRST_RANK_MEMORY_FILE_PREFIX-PID or
 OTHER_RANKS_MEMORY_FILE_PREFIX-PID; the kind of solver, SOLVED, INSTANT or KILLED; and the arguments of
 `rodsweep`.
 """
@@ -52,10 +52,10 @@ HOPF_FORCE = 27.4271941267592812
 
 @dataclass(frozen=True, slots=True)
 class SweepCase:
-    """A sweep to be run.
+    """A sweep to be measured.
 
-    points: number of points. directories: directories with a config. If there are several, each config has a
-    part of the points, and one command per directory runs, all at the same time. solver_kind:
+    points: number of points. directories: directories with a config each. If there are several, each config
+    has a part of the points, and one command runs in each directory, all at the same time. solver_kind:
     SOLVED, INSTANT or KILLED.
     """
 
@@ -126,8 +126,8 @@ class CommandRunCost:
     processors_busy_elsewhere: float
     """Mean number of processors that other programs kept busy; nan if unknown."""
     busy_fraction: float
-    """Fraction of the time of all ranks that was spent on points, not on waiting; nan for other solvers than
-    SOLVED."""
+    """Fraction of the time of all ranks that was spent on solving points, not on waiting; nan if
+    `solver_kind` is not SOLVED."""
 
 
 def launcher_arguments(rank_count: int) -> list[str]:

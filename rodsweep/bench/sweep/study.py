@@ -53,7 +53,7 @@ loading compiled code, scheduling, storing, and waiting. Memory is the peak of a
 rank gains less while other programs, or the host of a virtual machine, keep processors busy."""
 """Description of the measurements for the report."""
 CaseRunner = Callable[..., CommandRunCost]
-"""Type of `run_case` without its first argument: a function (case, number of ranks, fresh) -> cost."""
+"""Type of `run_case` with its first argument bound: a function (case, number of ranks, fresh) -> cost."""
 
 
 def run_sweep_study(quick: bool, command: Sequence[str]) -> BenchmarkReport:
@@ -127,7 +127,7 @@ def measure_in_turn(run: CaseRunner, planned_runs: Sequence[tuple[SweepCase, int
 
 
 def sweep_measurement(case: SweepCase, rank_count: int, runs: Sequence[CommandRunCost]) -> Measurement:
-    """Measurement of a sweep from its runs; times are medians, the error is nan."""
+    """Measurement of a sweep from several runs of it: times are medians; the field `error` is nan."""
     seconds = nan_median(run.seconds for run in runs)
     processes = rank_count * len(case.directories)
     peaks = zip(*(run.first_and_other_rank_peak_bytes for run in runs), strict=True)
@@ -154,7 +154,7 @@ def sweep_measurement(case: SweepCase, rank_count: int, runs: Sequence[CommandRu
 
 
 def values_of_table_row(m: Measurement) -> dict[str, object]:
-    """Numbers of a measured sweep, by name, for a row of a table."""
+    """Numbers of a measured sweep for a row of a table, by name of the column."""
     microseconds = 1e6 * m.extra_columns["ranks"] * m.seconds / m.extra_columns["points"]
     return {"case": m.case, "seconds": m.seconds, "microseconds": microseconds, **m.extra_columns}
 
@@ -200,7 +200,8 @@ def instant_solver_table(measurements: Sequence[Measurement]) -> str:
 
 
 def added_point_cost_table(measurements: Sequence[Measurement]) -> str:
-    """Explained table of the time, memory and file size of a further point, between sizes of sweeps."""
+    """Explained table of the time, memory and file size per further point, from one sweep size to the
+    next."""
     rows = []
     for (case, method), sizes in grouped_by_fields(measurements, "case", "method").items():
         if case == KILLED:

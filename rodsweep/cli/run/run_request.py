@@ -21,4 +21,4 @@ class RunRequest:
     strict: bool = False
     """Whether the run ends at the first exception that is a bug."""
     quiet: bool = False
-    """Whether to print problems only, without progress."""
+    """Whether the command prints problems only, and no progress."""

@@ -56,8 +56,8 @@ def _si_number(name: str, value: Any) -> float:
 
 
 def with_load_over_flutter(section: Mapping[str, Any]) -> dict[str, Any]:
-    """Keys and values of an arm, with a load like "1.2 of flutter" moved to a key like
-    `pressure_over_flutter`.
+    """Keys and values of an arm, in which a load given as a multiple of the flutter load, like `pressure:
+    "1.2 of flutter"`, becomes a number under a key like `pressure_over_flutter`.
 
     section: keys and values from the config. Raises ValueError if only some values of the load are relative,
     or if both `pressure` and `pressure_over_flutter` (or both force keys) are given.

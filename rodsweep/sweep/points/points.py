@@ -19,8 +19,8 @@ from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 
 NEUTRAL_VALUES = {name: parameter.neutral_value for name, parameter in PARAMETERS.items()}
-"""Neutral value of each parameter by name, for parameters without a column. Parameter values that are invalid
-in combination with neutral values are invalid in every combination."""
+"""Value of each parameter, by name, if it has no column, such as F = 0, k1 = inf or taper = 1. Parameter
+values that are invalid in combination with these values are invalid in every combination."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +73,8 @@ class Points:
 
     @property
     def parameter_values_of_rods(self) -> dict[str, Array]:
-        """Values of each parameter by name, (n,) each, as in `columns`, without points that have no rod."""
+        """Values of each parameter by name: those in `columns`; if some points have no rod because the rod
+        model does not apply, only the values at the other points, (rods,) each."""
         if self.validity_codes is None:
             return self.columns_by_name
         return self.parameter_values_of_points(np.flatnonzero(self.validity_codes == SLENDER))
@@ -166,9 +167,9 @@ class ParameterLine:
 
 
 def lines_along(columns: Mapping[str, Array], parameter_name: str) -> Iterator[ParameterLine]:
-    """Yields the lines of points along the parameter `parameter_name`, in the order of their first points.
-    Points at which the parameter is inf or NaN are left out. columns: each parameter at every point,
-    (points,)."""
+    """Yields the lines of points that differ in the parameter `parameter_name` only, in the order of their
+    first points. Points at which this parameter is inf or NaN are left out. columns: each parameter at every
+    point, (points,)."""
     x = columns[parameter_name]
     other_names = [other for other in columns if other != parameter_name]
     other_values = np.stack([columns[other] for other in other_names], axis=-1)

@@ -125,8 +125,7 @@ def _threshold_lines(arms: PointSelection) -> TextLines:
 def _flutter_lines(
     arms: PointSelection, loads: np.ndarray, ends: np.ndarray, frequency: np.ndarray
 ) -> TextLines:
-    """Lines about flutter: loads (flutter loads) and ends (largest searched loads) in SI, frequency in Hz;
-    all (n,)."""
+    """Lines about flutter. loads: of flutter, ends: of the searches, in SI; frequency: in Hz. All (n,)."""
     flutter_count = int(np.isfinite(loads).sum())
     search = f" up to {si_load_range_text(arms, ends)}" if np.isfinite(ends).any() else ""
     if not flutter_count:
