@@ -200,8 +200,7 @@ def instant_solver_table(measurements: Sequence[Measurement]) -> str:
 
 
 def added_point_cost_table(measurements: Sequence[Measurement]) -> str:
-    """Explained table of the time, memory and file size per further point, from one sweep size to the
-    next."""
+    """Explained table of time, memory and file size per further point, between successive sweep sizes."""
     rows = []
     for (case, method), sizes in grouped_by_fields(measurements, "case", "method").items():
         if case == KILLED:
