@@ -97,8 +97,9 @@ def _import_directory(directory: Path) -> ModuleType:
 
 
 def peers_of_study(package: ModuleType | None, study: str, quick: bool, folder: Path) -> PeerContribution:
-    """Contribution of the installed peers to the study with the name `study`. folder: empty directory in
-    which programs are compiled. Returns NO_PEERS without a package, or if the package has no such study."""
+    """Contribution of the installed peers to the study with the name `study`. quick: whether the study uses
+    fewer points and rounds. folder: empty directory in which programs are compiled. Returns NO_PEERS without
+    a package, or if the package has no such study."""
     module = f"{PEERS_PACKAGE_NAME}.{study}"
     if package is None or find_spec(module) is None:
         return NO_PEERS

@@ -37,7 +37,8 @@ QUANTITY_NAME_IN_SENTENCE_PATTERN = re.compile(
     rf"^({QUANTITY_NAME_PATTERN})"
     rf"|(?:(?<= and )|(?<=, with )|(?<= is not below ))({QUANTITY_NAME_PATTERN})(?= = | are )"
 )
-"""Regular expression of a quantity's name at the beginning of a sentence or before " = " and " are "."""
+"""Regular expression that finds the name of a quantity in an error message: at its beginning, or between "
+and ", ", " or " is not below " and " = " or " are "."""
 SEGMENT_NUMBER_PREFIX = "segments, number "
 """Beginning of a message about one segment."""
 

@@ -32,7 +32,8 @@ class BoundaryPointSettings:
     """Newton's method fails if |determinant| of the 3 x 3 matrix of a step is below this number; the
     determinants of regular matrices are far larger."""
     min_stagnant_step_ratio: float = 0.5
-    """A small step of more than this number times the previous step is rounding error."""
+    """A step shorter than `max_stagnant_step` is rounding error if it exceeds this number times the previous
+    step."""
     max_stagnant_step: float = 1e-10
     """Newton's method has also converged if |step| is below this number and more than
     `min_stagnant_step_ratio` times the previous |step|."""

@@ -74,9 +74,10 @@ def jumps_on_mesh(rod: Rod, mesh: Mesh) -> Jumps:
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _side_weights_at_jumps(material: RodMaterial, taper: float, mesh: Mesh) -> Array:
-    """Columns for both sides of every jump of an arm, (k, 2, 7), with the weights of both sides in the means,
-    and 0 in the columns of the coefficients. Cached, because the weights are independent of all parameters
-    except the taper."""
+    """Array in the order of `JUMP_SIDE_COLUMNS` for both sides of every jump of an arm, (k, 2, 7): the
+    weights of the two sides in the mean strains and the mean stress at the jump; 0 for the coefficients,
+    which depend on the rod. Cached, because the weights are independent of all parameters except the
+    taper."""
     indices, _ = _jump_side_indices_and_nodes(material, mesh)
     points = mesh.one_sided_nodes[indices]
     weights = _one_sided_node_points(mesh).quadrature_weights[indices]

@@ -46,7 +46,7 @@ class Page:
         self.latest_inputs: dict[str, AnswerInputs] = {}
         """`inputs_of_request` of the latest request of each kind."""
         self.drawn_around: PageState | None = None
-        """State around which the drawn diagram was solved; None before the first answer of a solver."""
+        """State of the page for which the drawn diagram was solved; None before a solver has answered."""
         self.contents = PageContents(self.change, self.load_config)
         self.pause_timer = PauseTimer(document, self._send_slow_requests)
         self.contents.add_to_document(document, self._callbacks())
@@ -77,7 +77,7 @@ class Page:
         self.solvers.cancel_session(self.session)
 
     def change(self, values: dict[str, str] | None = None, **changed: Any) -> None:
-        """Changes the state. values: changed texts of the visible tab. changed: other changed fields."""
+        """Changes the state. values: new texts of visible controls. changed: other changed fields."""
         state = replace(self.state, **changed)
         self._change_to(state.with_values(**values) if values else state)
 

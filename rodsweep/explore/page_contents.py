@@ -103,12 +103,14 @@ class PageContents:
         self.sharing.update_exported_texts(state)
 
     def move_load_lines(self, state: PageState, F: float) -> None:
-        """Marks the load of `state` in the pictures over the load. F: the load, in k3/L^2."""
+        """Moves the line that marks the load, in the pictures over the load, to the dimensionless force F, in
+        k3/L^2."""
         for picture in (self.growth, self.branches):
             picture.load_line.location = F * load_axis(state).factor_from_dimensionless
 
     def show_solved_load(self, answer: dict[str, Any], state: PageState) -> None:
-        """Marks the load of `state` in all pictures. answer: answer to the request "load"."""
+        """Marks the load of `state` in all pictures. answer: answer to the request "load", with the
+        dimensionless force F."""
         self.move_load_lines(state, answer["F"])
         y = SLIDER_SCALES[state.tab][state.second_parameter].value(
             state.visible_texts[state.second_parameter]

@@ -1,4 +1,4 @@
-"""Rows and sentences of `check` that several tasks share: on points, rods and arms."""
+"""Rows and sentences of the output of `rodsweep check` that several tasks share: on points, rods and arms."""
 
 from collections.abc import Callable, Mapping
 
@@ -35,8 +35,8 @@ def point_count_text(points: Points) -> str:
 
 
 def point_count_text_with_clause(points: Points, clause: str) -> str:
-    """Text with the number of points and a clause on each point: "50 points (a list), each searched from
-    ..."."""
+    """Text with the number of points and what `clause` says about each of them: "50 points (a list), each
+    searched from ..."."""
     return f"{point_count_text(points)}, {'each ' * (points.count > 1)}{clause}"
 
 
@@ -57,7 +57,8 @@ def stretch_shear_and_drag_rows(columns: Mapping[str, np.ndarray]) -> list[Check
 
 
 def varying_arm_and_law_rows(config: Config, columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
-    """Rows of `check` on quantities that vary along the arm, and on the constitutive law.
+    """Rows of the table of `rodsweep check` on quantities that vary along the arm, and on the constitutive
+    law.
 
     Empty for uniform arms of linear material. columns: values of the rods' parameters by name, arrays of any
     shape.

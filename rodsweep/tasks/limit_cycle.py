@@ -134,7 +134,7 @@ class LimitCycleTask(Task):
         return finest_initial_mesh(self.points, lambda rod: motion_mesh(rod, accuracy))
 
     def rows_of_check(self) -> list[CheckRow]:
-        """Rows of the table of modelled and neglected effects, and of stored variables."""
+        """Rows of the table of `rodsweep check`: modelled and neglected effects, and stored variables."""
         options = self.config.limit_cycle
         gamma1 = np.unique(self.points.parameter_values_of_rods["gamma1"])[:5]
         is_integrated = options.method == "integration"
@@ -159,8 +159,9 @@ class LimitCycleTask(Task):
     def _row_on_stored_values(
         self, description: str, option: str, variables: tuple[Variable, ...]
     ) -> CheckRow:
-        """Row of `check` on variables that are stored only on request, with number and size of the stored
-        values. option: name of the option of limit_cycle with the number of values per point."""
+        """Row of the table of `rodsweep check` on variables that are stored only on request, with number and
+        size of the stored values. option: name of the option of limit_cycle with the number of values per
+        point."""
         options = self.config.limit_cycle
         sample_count: int = getattr(options, option)
         if not sample_count:

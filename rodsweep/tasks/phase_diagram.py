@@ -103,8 +103,8 @@ class PhaseDiagramTask(CertifiedTask):
         return {self.config.plane_parameters[0]: self.values_along_row[[0, -1]]}
 
     def rows_of_check(self) -> list[CheckRow]:
-        """Rows of `check`: the rows of a linear task and, if cycles are requested, a row on the nonlinear
-        motion."""
+        """Rows of the table of `rodsweep check`: those of a linear task and, if cycles are requested, a row
+        on the nonlinear motion."""
         linear = CertifiedTask.rows_of_check(self)
         if not self.config.phase_diagram.cycles:
             return linear

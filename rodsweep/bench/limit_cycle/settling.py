@@ -96,8 +96,8 @@ def _solve_cycle_method(force: float, periods: float, error: float) -> SettlingM
 
 
 def settling_table(methods: Sequence[SettlingMethod], times: Sequence[TimedRuns]) -> str:
-    """Table in Markdown, after a paragraph that explains it: returns, time and error of each method in
-    `methods`."""
+    """Table in Markdown, after a paragraph that explains it: returns, time and error of each of `methods`.
+    times: timed runs of the methods, in the same order."""
     return (
         f"From a start of {START_DEFLECTION:g} L to the limit cycle. Waiting ends when two successive "
         f"returns agree to {PERIODICITY_TOLERANCE:.0e}. The integrator has the loosest tolerance at which "

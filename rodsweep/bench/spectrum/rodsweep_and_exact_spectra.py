@@ -1,5 +1,6 @@
-"""Spectra by rodsweep in the benchmark of spectra, names, numbers and a table for all methods, and
-eigenvalues to 30 digits: roots of D in multiple precision (mpmath), proved complete by the certificate."""
+"""Benchmark of spectra: the spectra by rodsweep, the table of all methods, and reference eigenvalues to 30
+digits. The reference eigenvalues are roots of D in multiple precision (mpmath), proved complete by the
+certificate."""
 
 from collections.abc import Callable, Iterable
 from typing import Any

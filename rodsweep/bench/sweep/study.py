@@ -227,7 +227,7 @@ def added_point_cost_table(measurements: Sequence[Measurement]) -> str:
 
 
 def time_file_and_memory_totals(m: Measurement) -> dict[str, float]:
-    """Totals of a measured sweep, by name: microseconds of all ranks, bytes of the file, bytes of memory."""
+    """Totals of a measured sweep, by name: microseconds of all ranks, bytes of file and of memory."""
     return {
         "microseconds": 1e6 * m.extra_columns["ranks"] * m.seconds,
         "file": m.extra_columns["file_bytes_per_point"] * m.extra_columns["points"],

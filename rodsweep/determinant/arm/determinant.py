@@ -69,7 +69,8 @@ class ArmDeterminant:
 
     @cached_property
     def exponent_samples_at_gauss_points(self) -> ExponentSamples:
-        """Samples of the arm at the Gauss points of each interval between breaks of the profile."""
+        """Coefficients of the local exponents of the arm at the Gauss points of each interval between breaks
+        of the profile."""
         points, _, weights = gauss_method(ARM_ELEMENT_SETTINGS.stage_count)
         lengths = np.diff(self.rod.material.breaks)[:, None]
         coefficients = self.rod.local_coefficients(
@@ -118,7 +119,7 @@ class ElementsOfArms(NamedTuple):
 
 
 def coefficient_samples(rods: list[Rod]) -> CoefficientSamples:
-    """Samples of the arms `rods`, whose profiles have equal breaks."""
+    """The `CoefficientSamples` of the arms `rods`, whose profiles have equal breaks."""
     # On a path of tapers the arm without taper has few points: the points of any other arm serve all.
     points, weights, _ = sampled_arm(min(rods, key=lambda rod: rod.material.is_piecewise_constant(rod.taper)))
     coefficients = LocalCoefficients(*local_coefficient_array(rods, points))
@@ -129,8 +130,9 @@ def coefficient_samples(rods: list[Rod]) -> CoefficientSamples:
 
 
 def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> ElementsOfArms:
-    """The elements that resolve every arm of `rods` for |w| <= W; all arms have the same material. Raises
-    FloatingPointError if `max_elements` elements do not resolve an arm."""
+    """The elements that resolve every arm of `rods` for |w| <= W; all arms have the same material. samples:
+    result of `coefficient_samples` for `rods`. Raises FloatingPointError if `max_elements` elements do not
+    resolve an arm."""
     tapers = np.array([rod.taper for rod in rods])
     edges = element_edges(
         W, samples.squared_exponent_coefficients, tapers, samples.points, rods[0].material.breaks

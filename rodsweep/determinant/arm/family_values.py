@@ -54,7 +54,8 @@ def write_propagators(family: ArmFamily, p: float, polynomials: Array, p_derivat
 
 @compiled_with_reordered_sums
 def _sum_series(series: Array, T: Array, rates: Array, values: Array, slopes: Array) -> None:
-    """values = sum_k T[k] series[k], slopes = sum_k rates[k] series[k], (n,) each; series: (nodes, n)."""
+    """values = sum_k T[k] series[k] and its derivative by p, slopes = sum_k rates[k] series[k], (n,) each.
+    series: (nodes, n). T, rates: Chebyshev polynomials and their derivatives at p, (nodes,)."""
     nodes, n = series.shape
     values[:] = 0.0
     slopes[:] = 0.0

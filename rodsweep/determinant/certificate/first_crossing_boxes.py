@@ -1,5 +1,5 @@
-"""The first boxes of a covering of the (eta, p) plane, outside which the a-priori bounds exclude every
-crossing.
+"""The first boxes of a covering of the (eta, p) plane, w = i eta on the imaginary axis, p: path variable. The
+a-priori bounds exclude every crossing outside these boxes.
 
 The a-priori bounds (`box_of_all_eigenvalues`) hold on an interval of the path. Intervals of p are so short
 that no coefficient changes much over an interval.
@@ -18,22 +18,23 @@ from .box_of_all_eigenvalues import BOX_SETTINGS, frequency_bound_on_path, zero_
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoveringSettings:
-    """Settings for the first boxes of a covering of the (eta, p) plane."""
+    """Settings for the first boxes of a covering of the (eta, p) plane: frequency eta, path variable p."""
 
     min_intervals: int = 8
     """Minimum number of intervals of p into which the path is divided."""
     max_upper_over_lower_eta: float = 4.0
-    """Largest ratio of the upper to the lower end of a first box in eta."""
+    """Largest ratio of the upper to the lower end of a first box in the frequency eta."""
     max_nu_decrease_fraction: float = 0.5
     """Largest decrease of the stretch nu over an interval of p, as a fraction of nu at the start of the
     interval."""
     min_interval_over_longest: float = 1e-6
-    """Shortest interval divided by the longest interval. Near p = 0 intervals are short, because a drag or
-    compliance p at most doubles over an interval."""
+    """Lower limit of the length of an interval of p, as a fraction of the longest. Near p = 0 intervals
+    become short, because a drag or compliance p at most doubles over an interval."""
     min_last_over_previous_interval: float = 1e-3
     """If the last interval of p is below this fraction of the previous interval, the two are merged."""
     eta_padding: float = 1e-6
-    """Length added to the upper bound of eta, in 1/tau2, because the bound is 0 at F = 0."""
+    """Amount added to the upper bound of the frequency eta, in 1/tau2, because the bound itself is 0 at F =
+    0."""
 
 
 COVERING_SETTINGS = CoveringSettings()
@@ -63,8 +64,9 @@ def path_intervals_of_bounded_change(
 
 
 def first_crossing_boxes(path: ParameterPath, p_start: float, p_stop: float) -> Array | None:
-    """Boxes (eta_from, eta_to, p_from, p_to) that contain every crossing with p from p_start to p_stop, (n,
-    4). None if no a-priori bound exists, or if the lower bound of eta is 0 or almost underflows."""
+    """Boxes (eta_from, eta_to, p_from, p_to), (n, 4), that contain every crossing w = i eta, eta > 0, with p
+    from p_start to p_stop. None if no a-priori bound exists, or if the lower bound of eta is 0 or almost
+    underflows."""
     boxes = []
     for interval_start, interval_end in path_intervals_of_bounded_change(path, p_start, p_stop):
         max_eta = (1 + BOX_SETTINGS.relative_bound_excess) * frequency_bound_on_path(

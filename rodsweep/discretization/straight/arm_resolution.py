@@ -96,8 +96,8 @@ def _division_distances_from_end(length: float, order: int, wave_number: float) 
 
 def arm_elements(rod: Rod, wave_number: float, accuracy: float, max_order: int | None = None) -> Elements:
     """Elements that resolve a field along an arm with the mean wave number `wave_number`, in 1/L, to a
-    relative accuracy. max_order: maximum order of an element before `profile_order_increase`, by default
-    `RESOLUTION_SETTINGS.max_order`."""
+    relative accuracy. max_order: maximum order of an element before `profile_order_increase` is added, by
+    default `RESOLUTION_SETTINGS.max_order`."""
     wave_numbers = wave_number * _wave_number_over_mean(rod)
     return _elements_for_wave(
         rod,

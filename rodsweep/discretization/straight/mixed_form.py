@@ -169,8 +169,9 @@ def axial_field(values: Array) -> Array:
 
 
 def integral_to_tip(mesh: Mesh, values: Array) -> Array:
-    """Integral of a field from each node to the tip, (nodes + 1,), for a mesh without node spacing ratios.
-    values: values of the field at all nodes, (nodes + 1,)."""
+    """Integral of a field from each node to the tip, (nodes + 1,). values: values of the field at all nodes,
+    (nodes + 1,). mesh: a mesh without node spacing ratios, on which positions are linear in the coordinates
+    of the elements."""
     total = np.zeros(mesh.node_count + 1)
     for nodes, order, length in zip(mesh.node_ranges, mesh.orders, mesh.lengths, strict=True):
         ends = shape_integration_matrices(order).nodal_integrals_to_nodes

@@ -40,8 +40,8 @@ MAX_LINE_PANELS = 6
 """If a second parameter has at most this number of values, each value has a panel; otherwise a map is
 drawn."""
 LINEAR_COLOUR_RANGE_FRACTION = 1e-4
-"""The colour scale of a map is linear up to this fraction of the largest |growth rate|, but at least up
-to 1."""
+"""The colour scale of a map is linear up to this fraction of the largest |growth rate|, at least up to
+1/tau2, and logarithmic beyond."""
 GROWTH_LABEL = r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$"
 """Label of the colour bar."""
 
@@ -122,8 +122,8 @@ def _draw_files(request: FigureRequest) -> str:
 
 
 def _view_of_spectra_line(view: ResultView, request: FigureRequest) -> ResultView:
-    """View of a file as a line of spectra, without infinite parameters. Raises InputError if the file is not
-    a line of spectra."""
+    """View of a file as a line of spectra along one parameter, without points at which a parameter is
+    infinite. Raises InputError if the file is not a line of spectra."""
     if view.task != request.views[0].task:
         raise InputError(
             f"{view.path} is of the task {view.task}; only lines of spectra can share a figure; plot it by "

@@ -158,7 +158,7 @@ class ResultFileWriter:
             return missing_ranges(self.path)
 
     def finish(self, attributes: dict[str, Any], additions: FinalAdditions = NO_FINAL_VARIABLES) -> None:
-        """Stores journalled points, `attributes`, `additions`, and variables computed from all points."""
+        """Stores journalled points, `attributes`, variables computed from all points, and `additions`."""
         self.add_journals(attributes, additions)
 
     def add_journals(self, attributes: dict[str, Any], additions: FinalAdditions | None = None) -> None:

@@ -1,4 +1,5 @@
-"""Variables of a phase diagram on the extrema of the row parameter along curves of folds of cycles."""
+"""Variables of a phase diagram on extrema along curves of folds of cycles: points at which the parameter that
+differs between rows (the row parameter) is largest or smallest on the curve."""
 
 from ...model.parameters import PARAMETERS
 from .variables import Variable, along_dimension, integer_variable, real_variable
@@ -7,13 +8,14 @@ UNLOCATED_EXTREMA_VARIABLE = integer_variable(
     "cycle_extrema_unlocated",
     "number of extrema of the row parameter along curves of folds that could not be located",
 )
-"""Number of extrema of the row parameter that could not be located; a file without such extrema does not have
-this variable."""
+"""Number of extrema of the parameter that differs between rows, along curves of folds, that could not be
+located; a file without such extrema does not have this variable."""
 
 
 def fold_curve_extremum_variables(line_parameter: str, row_parameter: str) -> dict[str, Variable]:
-    """Variables, by name, of the extrema of the row parameter `row_parameter` along curves of folds of
-    cycles; a file without extrema does not have them. line_parameter: parameter along the rows."""
+    """Variables, by name, of the points on curves of folds of cycles at which the parameter `row_parameter`,
+    which differs between rows, is extremal; a file without such points does not have them. line_parameter:
+    parameter along the rows."""
     units = {name: PARAMETERS[name].unit for name in (line_parameter, row_parameter)}
     error_meaning = "estimate of the absolute error of cycle_extremum_"
     variables = along_dimension(

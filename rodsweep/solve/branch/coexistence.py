@@ -158,9 +158,10 @@ def _undecided_values_text(name: str, values: Array) -> str:
 def _status_and_message_of_row(
     row: DiagramRow, branches: BranchesOfRod, max_special_points: int, undecided: Array
 ) -> tuple[CoexistenceStatus, str]:
-    """Returns (status, message) of a row: status of the search for thresholds if this search has a problem,
-    otherwise status of the branches. max_special_points: maximum number of stored special points. undecided:
-    parameter values, (n,), at which the stable states are undecided because of the cycles."""
+    """Returns (status, message) of a row of a phase diagram. The status is that of the search for thresholds
+    if this search has a problem, otherwise that of the branches. max_special_points: maximum number of stored
+    special points. undecided: parameter values, (n,), at which the stable states are undecided because of the
+    cycles."""
     message = "; ".join(filter(None, [row.message, branches.message]))
     # The most serious problem first: without all thresholds of the straight rod, branches may be missing.
     if row.status is not ThresholdStatus.ok:

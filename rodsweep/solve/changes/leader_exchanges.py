@@ -38,7 +38,8 @@ number is a constant, because with fewer eigenvalues it would be unknown which e
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeaderExchangeSettings:
-    """Settings of the search for exchanges of the leading eigenvalue between samples."""
+    """Settings of the search for exchanges of the leading eigenvalue between samples: rods of the path whose
+    leading eigenvalues are computed."""
 
     eigenvalue_accuracy: float = 1e-6
     """Relative accuracy of the eigenvalues at a sample, before the refinement by Newton's method on D."""
@@ -55,8 +56,8 @@ class LeaderExchangeSettings:
     """If further exchanges may lie between two samples, a sample is added on either side of the exchange
     found, at a distance of this fraction of the distance between the two samples."""
     min_interval_fraction_with_two_exchanges: float = 1e-9
-    """This number replaces `min_interval_fraction` if the interpolation does not exclude two exchanges
-    between the samples."""
+    """Value that replaces `min_interval_fraction` if the interpolation does not exclude two exchanges between
+    two samples."""
     min_subinterval_fraction: float = 0.05
     """Smallest distance of an added sample from the two samples between which it lies, divided by their
     distance. A minimum of the interpolant, at which a sample is added, may coincide with one of the two
@@ -66,8 +67,8 @@ class LeaderExchangeSettings:
     the start exceeds both this multiple of the start's error estimate and `max_relative_newton_displacement`
     times |w|, or if another eigenvalue of the sample is nearer to w than the start is."""
     max_relative_newton_displacement: float = 1e-12
-    """The eigenvalue w found by Newton's method is not rejected for a distance from the start of at most this
-    multiple of |w|: some thousand rounding errors."""
+    """The eigenvalue w found by Newton's method is never rejected if its distance from the starting value of
+    the method is at most this multiple of |w|: some thousand rounding errors."""
     min_relative_interval_length: float = 1e-12
     """If no exchange is found between two samples with a real and a complex leading eigenvalue, the search
     fails once the interval is at most this fraction of the larger |p| of the two: some thousand rounding
@@ -78,7 +79,8 @@ LEADER_EXCHANGE_SETTINGS = LeaderExchangeSettings()
 
 
 class LeaderExchangeSearch:
-    """Finds the exchanges of the leading eigenvalue along a path. samples: the solved samples, by p."""
+    """Finds the exchanges of the leading eigenvalue along a path of rods. samples: rods of the path whose
+    leading eigenvalues are computed, by path variable p."""
 
     def __init__(self, problem: PathEigenproblem, certify: bool):
         self.problem = problem
@@ -120,8 +122,9 @@ class LeaderExchangeSearch:
         return SpectrumSample(p, w, slope, *self.problem.relaxation_time_and_slope(p))
 
     def exchanges_and_search_end(self, edges: list[float]) -> tuple[list[Threshold], SearchEnd]:
-        """Returns (exchanges, end of the search). exchanges: all exchanges by increasing p, for p from the
-        first of `edges` to the end of the search. Raises Unsolvable if the search ends at the first edge."""
+        """Returns (exchanges, end of the search). exchanges: all exchanges by increasing p, from the first of
+        `edges` to the end of the search. edges: increasing values of p that divide the path into the first
+        intervals. Raises Unsolvable if the search ends at the first edge."""
         exchanges: list[Threshold] = []
         intervals = IntervalQueue(edges)
         self.sample_at(edges[0])

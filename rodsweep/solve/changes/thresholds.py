@@ -34,7 +34,8 @@ class Thresholds:
 
     status: ThresholdStatus
     search_result: ThresholdSearchResult
-    """Thresholds and unstable modes found by the search, with the searched interval and the doubts."""
+    """Thresholds and unstable modes found by the search, with the searched interval and the reasons for
+    doubts."""
     end: float
     seconds: float = 0.0
     """Wall-clock time of the search, in s."""
@@ -103,7 +104,7 @@ def missed_accuracy_text(name: str, thresholds: Sequence[Threshold], accuracy: f
 
 @cache
 def warm_up() -> None:
-    """Solves one rod to load compiled code and to fill the pools before a time is measured."""
+    """Solves one rod to load compiled code and to create the pooled solvers before a time is measured."""
     solve_thresholds(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), ThresholdsRequest(40.0, 1e-8, True, 4))
 
 

@@ -30,16 +30,18 @@ class HopfCoefficientSettings:
     """Settings for the coefficients of a Hopf point and their errors, and for the cache of searches."""
 
     order_increase: int = 4
-    """Increase of the element order from the first mesh to the second: the error of c falls by 10 to 10^4."""
+    """Increase of the element order from the first mesh to the second, by which the error of the Landau
+    coefficient falls by a factor of 10 to 10^4."""
     max_finer_meshes: int = 5
-    """Maximum number of meshes after the first. The change of c to a mesh of halved elements is no error
-    estimate."""
+    """Maximum number of meshes after the first. A change of the Landau coefficient between meshes of
+    different element lengths is not used as error estimate."""
     coarsest_accuracy: float = 1e-2
     """Coarsest relative accuracy for which the first mesh is chosen: the mesh must identify the
     eigenvalue."""
     landau_rounding_per_condition_number: float = 1.5e-14
-    """Relative rounding error of c, divided by the condition number of the eigenvalue. Most rods have 1e-15;
-    the largest measured value is 9e-15, for nearly crushed rods that are soft in stretch and shear."""
+    """Relative rounding error of the Landau coefficient, divided by the condition number of the eigenvalue.
+    Most rods have 1e-15; the largest measured value is 9e-15, for nearly crushed rods that are soft in
+    stretch and shear."""
     max_landau_force_sensitivity: float = 20.0
     """Bound on |dc/dF|/|c|, c: Landau coefficient, divided by |w''|/|w'| + 1/|F| + 1/|Fc - F|; w: eigenvalue,
     primes: d/dF, Fc: crushing force. The largest measured value is 10, for high modes of rods soft in shear;
@@ -95,9 +97,9 @@ class HopfCoefficients:
 
 
 def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoefficients:
-    """The normal form coefficients at the Hopf point `hopf`, with c to the relative `accuracy`; raises
-    Unsolvable. rod: the rod at the force of `hopf`. c is less accurate if its rounding error exceeds
-    `accuracy`, or if the finest mesh does not suffice."""
+    """The normal form coefficients at the Hopf point `hopf`, with the Landau coefficient to the relative
+    `accuracy`; raises Unsolvable. rod: the rod at the force of `hopf`. The Landau coefficient is less
+    accurate if its rounding error exceeds `accuracy`, or if the finest mesh does not suffice."""
     settings = HOPF_COEFFICIENT_SETTINGS
     w = complex(0.0, hopf.frequency)
     fine_form, landau_change, slope_change = _form_and_changes(rod, w, accuracy)
@@ -153,7 +155,7 @@ def _form_and_changes(rod: Rod, w: complex, accuracy: float) -> tuple[NormalForm
 
 
 def _rounding_error(form: NormalForm) -> float:
-    """Relative rounding error of c, from the condition number of the eigenvalue."""
+    """Relative rounding error of the Landau coefficient, from the condition number of the eigenvalue."""
     product_sizes = form.transverse_matrices.A_product_magnitude(form.p, form.q)
     return HOPF_COEFFICIENT_SETTINGS.landau_rounding_per_condition_number * product_sizes / abs(form.w)
 

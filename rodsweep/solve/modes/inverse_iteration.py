@@ -34,7 +34,7 @@ class ModeVectors:
     """Right modes (Y, Theta) with Y(1) = 1, in L and rad for a tip deflection L."""
     mode_strains: Complex
     """Shear and curvature (h2, Pi) = (Y' - nu Theta, Theta') of the right modes (Sec. V); h2 is exactly 0 in
-    an unshearable rod. At a jump of a stiffness: the value behind the jump."""
+    an unshearable rod. At a jump of a stiffness: the value on the side of the tip."""
     left_modes: Complex
     """Left modes (Y+, Theta+) with Y+(1) = 1, in L and rad for a tip deflection L."""
     pairing: Complex

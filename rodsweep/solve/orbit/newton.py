@@ -49,7 +49,8 @@ class NewtonMatrix(Protocol):
 
     @property
     def multipliers_over_solved_time_interval(self) -> Complex:
-        """Multipliers over the solved part of the period, (multipliers,), with the trivial multiplier."""
+        """Multipliers over the solved part of the period, half of it for a symmetric orbit, with the trivial
+        multiplier: (multipliers,)."""
 
     def multipliers(self) -> Complex:
         """Floquet multipliers larger than rounding error, by descending modulus, (multipliers,), with the

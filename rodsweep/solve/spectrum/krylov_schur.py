@@ -21,8 +21,8 @@ from .shift_invert import KRYLOV_SETTINGS, CurrentPencil, ShiftInvertSolver
 
 @compiled
 def _write_shifted_matrix(A: NDArray, coefficients: NDArray, terms: NDArray, shift: NDArray) -> None:
-    """A = sum_i coefficients[i] terms[i] - diag(shift), written into `A`, the transpose of PETSc's array,
-    (n, n). coefficients: (m,). terms: matrices stored by columns, (m, n^2). shift: (n,)."""
+    """Writes the matrix sum_i coefficients[i] terms[i] - diag(shift) into `A`, (n, n), which is PETSc's array
+    transposed. coefficients: (m,). terms: matrices stored by columns, (m, n^2). shift: (n,)."""
     entries = A.reshape(-1)
     entries[:] = 0.0
     for i in range(len(coefficients)):

@@ -137,7 +137,7 @@ class SpectrumSearch:
         return max(ratio, distance_ratio / (self.request.accuracy if self.needs_vectors else max_ratio))
 
     def request_missing_eigenvalues(self, counted: int, found_count: int) -> None:
-        """Requests more eigenvalues or a finer mesh, if `counted` were counted and `found_count` found."""
+        """Requests more eigenvalues or a finer mesh, because `counted` and `found_count` differ."""
         if counted < found_count:  # spurious eigenvalues
             self.mesh = self.problem.finer_mesh(self.mesh)
             return

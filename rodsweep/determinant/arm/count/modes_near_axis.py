@@ -26,7 +26,7 @@ class NearAxisSettings(KernelConstants):
     """Settings for the starting points on the imaginary axis, and for Newton's method from them."""
 
     first_start_frequency: float = 0.01
-    """Im w of the first starting point, in 1/tau2; crossings of all arms of the surveys lie above 1."""
+    """Im w of the first starting point, in 1/tau2. The crossings of all arms that were tried lie above 1."""
     start_frequency_ratio: float = 1.25
     """Ratio of Im w of a starting point to Im w of the previous starting point."""
     max_distance_from_start_over_frequency: float = 0.5

@@ -57,8 +57,9 @@ def _integrate_columns(Q: Array, integrands: Array, integrals: Array) -> None:
 
 @compiled_with_reordered_sums
 def _fill_linear_system(integrals: Array, lane: int, Q: Array, system: Array) -> None:
-    """Writes the linear system with the right-hand sides 1 and Q of lane number `lane` into `system`,
-    (STAGES, columns). integrals: F Q c3 Q g of each lane, (STAGES, LANES * STAGES). Q: (STAGES, STAGES)."""
+    """Writes the linear system (1 + F Q c3 Q g) X = [1, Q] of the element `lane` of a batch into `system`,
+    (STAGES, columns): matrix, then right-hand sides; the 1 in the latter is a vector of ones. integrals: F Q
+    c3 Q g of each element, (STAGES, LANES * STAGES). Q: (STAGES, STAGES)."""
     for i in range(ARM_ELEMENT_SETTINGS.stage_count):
         for j in range(ARM_ELEMENT_SETTINGS.stage_count):
             system[i, j] = integrals[i, lane * ARM_ELEMENT_SETTINGS.stage_count + j]

@@ -18,8 +18,8 @@ class AveragedWeightSettings(KernelConstants):
     """Settings for the averaged weights alpha that are tried."""
 
     load_term_factors: tuple[float, ...] = (1.0, 0.5, 0.0)
-    """Values of f in l = f |F| sqrt(c2 c3 gamma3/gamma2), the term with the load in the trial weight t. f = 1
-    is mostly the best and comes first: its region then ends the other trials early."""
+    """Values of f in the trial weight t = g/(nu + l), l = f |F| sqrt(c2 c3 gamma3/gamma2). f = 1 is mostly
+    the best and comes first: its region then ends the other trials early."""
     window_half_widths: tuple[float, ...] = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
     """Values of the half-width h of the window, in L."""
     max_distance_across_jump: float = 1e-6
@@ -37,7 +37,8 @@ AVERAGED_WEIGHT_SETTINGS = AveragedWeightSettings()
 
 
 class GridPositions(NamedTuple):
-    """Positions of n points in a grid: index of the grid interval, (n,), and fraction of its length, (n,)."""
+    """Positions of n points in a grid: index of the grid interval, (n,), and distance from the start of the
+    interval, as a fraction of its length, (n,)."""
 
     interval_index: NDArray[np.int64]
     """Index of the grid interval that contains each point, (n,)."""

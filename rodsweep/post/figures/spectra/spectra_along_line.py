@@ -66,8 +66,8 @@ def followed_or_all_roots(growth: np.ndarray, frequency: np.ndarray, roots: str)
 
 
 def with_gaps_between_roots(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Returns (x, w) with NaN inserted between points at which the followed roots are different roots. x:
-    parameter, (n,). w: followed roots, (n, 2)."""
+    """Returns (x, w) with NaN inserted between neighbouring points at which the followed roots are not the
+    same roots. x: parameter, (n,). w: followed roots, (n, 2)."""
     step = np.abs(np.diff(w, axis=0)).max(axis=1)
     largest_moduli = np.abs(w).max(axis=1)
     # If roots are exchanged, the step is far larger than the neighbouring steps and comparable to the root.

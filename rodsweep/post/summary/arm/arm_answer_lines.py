@@ -56,7 +56,7 @@ def arm_answer(points: PointSelection) -> TextLines:
 
 def _validity_and_answer_lines(points: PointSelection, arms: PointSelection) -> TextLines:
     """Line on the validity of the model, and lines with the answer for the arms to which it applies; for all
-    arms if it applies to none. points: all computed points. arms: the points with a rod of the model."""
+    arms if it applies to none. points: all computed points. arms: the points with a slender arm."""
     if not arms.count:
         no_rods = ["none of these arms corresponds to a rod of the model; the statuses state the reasons"]
         return no_rods if points.count else []
@@ -102,7 +102,7 @@ def _point_count_clause(part: PointSelection, arms: PointSelection) -> str:
 
 
 def _threshold_lines(arms: PointSelection) -> TextLines:
-    """Lines about flutter, extreme arms, effect of drag, onset of oscillation and return to stability."""
+    """Lines about flutter, extreme loads, effect of drag, onset of oscillation, later stability."""
     load = arms.view.load_kind
     names = (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz")
     flutter, ends, rates = map(arms.values, names)

@@ -221,7 +221,8 @@ class BorderedMatrix:
         period, parameter), (3,).
 
         right_side: right-hand sides of the matching conditions, of the phase condition and of the border, (m
-        n + 2,). sides: right-hand sides of the stages, (K, s, n). fraction: factor on `sides`.
+        n + 2,). sides: right-hand sides of the stages, (K, s, n). fraction: factor on `sides`, 1 for a Newton
+        step, 0 for a tangent.
         """
         row = np.zeros(len(self._matrix))
         row[: len(self.orbit.start_state)] = (

@@ -25,8 +25,8 @@ Unsolvable."""
 
 
 def unstable_multiplier_count(point: BranchCycle) -> int:
-    """Number of nontrivial multipliers of the cycle `point`, over the solved time interval, outside the unit
-    circle."""
+    """Number of nontrivial multipliers of the cycle `point` outside the unit circle. The multipliers are over
+    half a period for a symmetric cycle, otherwise over a period."""
     return int((np.abs(point.multipliers_over_solved_time_interval) > 1).sum())
 
 
@@ -82,7 +82,8 @@ def _count_of_multipliers_below_minus_one(point: BranchCycle) -> int:
 
 
 def _real_multipliers(point: BranchCycle) -> Array:
-    """The real multipliers of the cycle `point` over the solved time interval, (multipliers,)."""
+    """The real multipliers of the cycle `point`, (multipliers,), over half a period for a symmetric cycle,
+    otherwise over a period."""
     h = point.multipliers_over_solved_time_interval
     # Eigenvalue solvers return a real double multiplier as a pair with a tiny imaginary part.
     return h.real[np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h)]

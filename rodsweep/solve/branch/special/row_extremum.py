@@ -13,11 +13,13 @@ from .solved_curve_point import CURVE_SECANT_SETTINGS, SEARCH_LINE_ALONG_BRANCH,
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RowExtremumSettings:
-    """Settings for locating an extremum of the row parameter along a curve of folds."""
+    """Settings for locating an extremum, along a curve of folds, of the parameter that differs between
+    rows."""
 
     relative_slope_tolerance: float = 1e-7
-    """Largest slope of the curve at a located extremum, divided by the change of the slope between the two
-    points of the curve beside the extremum. Errors of the fold, 1e-9, change the slope by about as much."""
+    """Largest slope dy/dx of the curve at a located extremum of the row parameter y, divided by the change of
+    the slope between the two points beside the extremum. Errors of the fold, 1e-9, change the slope by about
+    as much."""
 
 
 ROW_EXTREMUM_SETTINGS = RowExtremumSettings()
@@ -105,7 +107,7 @@ def _located_extremum(
     problem: CurvePointSolver, first: _PointWithSlope, second: _PointWithSlope
 ) -> SolvedCurvePoint:
     """The extremum of the row parameter between the successive points `first` and `second` of a curve, with
-    the errors of both parameters; raises Unsolvable."""
+    the errors of both parameters; raises Unsolvable. problem: solver for points of the curve."""
     slopes = first.slope, second.slope
     tolerance = ROW_EXTREMUM_SETTINGS.relative_slope_tolerance * abs(second.slope - first.slope)
 

@@ -91,15 +91,16 @@ class NormalDerivatives:
     """Derivatives of cycles near a curve of special points with respect to the distance from the curve."""
 
     direction: Array
-    """Unit direction across the curve, (2,), in components (along the branch, row coordinate)."""
+    """Unit direction across the curve, (2,), in components (arc length along the branch,
+    `row_coordinate`)."""
     test_function_slope: float
-    """Derivative of the test function, which is 0 on the curve."""
+    """Derivative of the test function, which is 0 on the curve, by the distance from the curve."""
     orbit_derivative: Array
-    """Derivative of the orbit values and of the coordinate of the parameter along a row, (N + 1,)."""
+    """Derivative of orbit values and parameter along a row by the distance from the curve, (N + 1,)."""
     mesh: OrbitMesh
     """Mesh of the derivative `orbit_derivative`."""
     difference_quotient_distance: float
-    """Distance between the two cycles of the difference quotient."""
+    """Distance of the two cycles whose difference quotient gives the derivatives."""
     contraction_rate: float = inf
     """Ratio of successive corrections, divided by the cycle's relative distance from the orbit of the matrix;
     inf if unknown."""
@@ -175,7 +176,7 @@ class SolvedCurvePoint:
     measured_error: CurveErrorCalibration | None = None
     """Error measured at this point or at an earlier point of the curve; None if unknown."""
     secant_parameter_error: float = 0.0
-    """Absolute error of `branch_parameter_value` on a fixed row, by the tolerance of the secant method."""
+    """Absolute error of `branch_parameter_value` at fixed row parameter, due to the secant method."""
     normal_derivatives: NormalDerivatives | None = None
     """Derivatives across the curve; None if unknown."""
 
@@ -196,8 +197,8 @@ class SolvedCurvePoint:
         return np.append(difference, self.row_coordinate - other.row_coordinate)
 
     def unit_normal(self, step: Array) -> Array:
-        """Unit normal of the curve, (2,), in components (along the branch, row coordinate); perpendicular to
-        `step`, (4,), a step along the curve."""
+        """Unit normal of the curve, (2,), in components (arc length along the branch, `row_coordinate`).
+        step: step along the curve, (4,), by `step_from`."""
         tangent = np.array([float(self.branch_direction @ step[:3]), step[3]])
         # Rotated by a right angle, so that the correction does not move along the curve.
         return np.array([-tangent[1], tangent[0]]) / np.linalg.norm(tangent)

@@ -34,7 +34,8 @@ class TestFunctionZero(NamedTuple):
 
 
 def special_point_at(kind: SpecialPointKind, zero: TestFunctionZero, parameter_name: str) -> SpecialPoint:
-    """The special point of a kind at a zero, without errors, along the parameter `parameter_name`."""
+    """The special point of the kind `kind` at the zero `zero` of its test function, without error estimates,
+    for a branch along the parameter `parameter_name`."""
     return SpecialPoint(
         kind=kind,
         parameter_value=getattr(zero.orbit.form.rod, parameter_name),
@@ -46,8 +47,8 @@ def special_point_at(kind: SpecialPointKind, zero: TestFunctionZero, parameter_n
 
 
 def parameter_error_from_meshes(point: SpecialPoint, coarser_point: SpecialPoint) -> float:
-    """Difference between the parameters of a special point on a mesh, `point`, and on a coarser mesh,
-    `coarser_point`, with a safety factor and the rounding error."""
+    """Error of the parameter of a special point: difference between the values on a mesh (`point`) and on a
+    coarser mesh (`coarser_point`), times a safety factor, plus the rounding error."""
     difference = abs(point.parameter_value - coarser_point.parameter_value)
     rounding_error = SPECIAL_POINT_SETTINGS.relative_rounding_error * abs(point.parameter_value)
     return SPECIAL_POINT_SETTINGS.error_safety_factor * difference + rounding_error

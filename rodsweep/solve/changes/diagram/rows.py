@@ -39,8 +39,8 @@ class StabilityClass(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class RowRequest:
-    """Request for every row: name of the varied parameter, and its increasing values, (values,). certify:
-    whether the list of thresholds must be proved complete."""
+    """Request for the rows of a phase diagram, the same for each row: parameter that varies along the row,
+    and its increasing values, (values,). certify: whether the list of thresholds must be proved complete."""
 
     parameter_name: str
     """Name of the parameter that varies along a row."""

@@ -32,9 +32,9 @@ class MeshErrorCalibrationSettings:
     at most half."""
     min_error_per_larger_error: float = 2.0
     """Lower limit of the error estimates of period and of largest y, divided by the larger of the two
-    measured errors. The two errors decrease as the squares of the tails, and rarely change sign near the same
-    mesh. Without this limit, the error of one cycle in a thousand exceeded its estimate, by a factor of up to
-    4.5."""
+    measured errors. The two errors decrease as the squared coefficient tails, and rarely change sign near the
+    same mesh. Without this limit, the error of one cycle in a thousand exceeded its estimate, by a factor of
+    up to 4.5."""
     planned_error_per_accuracy: float = 0.5
     """A mesh is planned so that the predicted errors of period and largest y are at most this fraction of the
     accuracy."""
@@ -65,7 +65,8 @@ class MeshErrorCalibrationSettings:
     """Upper limit of the ratio of the numbers of time intervals, planned mesh to current mesh; the
     convergence rates are not known for finer meshes."""
     max_relative_parameter_change: float = 0.2
-    """The errors are measured again if the summed relative changes of the parameter exceed this number."""
+    """The errors are measured again if the relative changes of the parameter along the chain since the last
+    measurement add up to more than this number."""
     max_error_growth: float = 4.0
     """The errors are measured again if an error has grown by more than this factor since the measurement."""
     min_orbit_size_ratio: float = 0.75
@@ -103,10 +104,11 @@ class RefinementSettings:
     """Largest relative distance between a cycle and the orbit whose matrix gives its multipliers, divided by
     the accuracy."""
     min_distance_from_matrix_orbit: float = 1e-7
-    """Lower limit of the relative distance that `allowed_distance_from_matrix_orbit` returns: multipliers
-    need no more digits."""
+    """Lower limit of the relative distance that is allowed between a cycle and the orbit at which the matrix
+    with its multipliers was assembled: multipliers need no more digits."""
     max_distance_from_matrix_orbit: float = 1e-5
-    """Upper limit of the relative distance that `allowed_distance_from_matrix_orbit` returns."""
+    """Upper limit of the relative distance that is allowed between a cycle and the orbit at which the matrix
+    with its multipliers was assembled."""
     multiplier_error_per_matrix_distance: float = 10.0
     """Relative error of the multipliers divided by the sum of two numbers: the relative distance between the
     cycle and the orbit at which the matrix was assembled, and the error of the trivial multiplier."""

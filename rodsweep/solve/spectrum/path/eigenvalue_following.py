@@ -139,12 +139,11 @@ def _iterate_to_convergence(
     first: CorrectedEigenvalue, crowding: float, exact: bool, rod: Coefficients, direction: Coefficients
 ) -> tuple[CorrectedEigenvalue, float]:
     """Returns (last Newton step, error) of an eigenvalue of a uniform rod, after Newton steps until
-    `converged_error` is finite.
+    `converged_error` is finite; the error is inf without convergence.
 
     first: result of the first step. crowding: upper estimate of |D''/(2 D')| at the eigenvalue. exact:
-    whether the remainder must be below the rounding error, and the error must cover nearly all rounding
-    errors of D. rod: coefficients of the rod. direction: d(F, nu, c2, gamma3)/dp. The error is inf without
-    convergence.
+    whether crowding times the squared step must be below the rounding error, and the error must cover nearly
+    all rounding errors of D. rod: coefficients of the rod. direction: d(F, nu, c2, gamma3)/dp.
     """
     step = first
     for _ in range(EIGENVALUE_FOLLOWING_SETTINGS.max_newton_steps):
