@@ -53,7 +53,7 @@ loading compiled code, scheduling, storing, and waiting. Memory is the peak of a
 rank gains less while other programs, or the host of a virtual machine, keep processors busy."""
 """Description of the measurements for the report."""
 CaseRunner = Callable[..., CommandRunCost]
-"""Type of `run_case` with its first argument bound: a function (case, number of ranks, fresh) -> cost."""
+"""Function that runs a sweep: (case, number of ranks, fresh: replace an existing file) -> cost."""
 
 
 def run_sweep_study(quick: bool, command: Sequence[str]) -> BenchmarkReport:

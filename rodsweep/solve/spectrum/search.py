@@ -61,7 +61,7 @@ class SpectrumSearch:
         self.best: CheckedCandidates | None = None
         self.stalled_refinements = self.failure_count = 0
         self.incomplete: Candidates | None = None
-        """Last roots of D that were too few for request or count; later roots are united with them."""
+        """Roots of D found so far, if fewer than requested or counted; later roots are added to them."""
         self.disagreement: Comparison | None = None
         """Last comparison in which the count differs from the number of eigenvalues found."""
         self.is_leader_unresolved = False

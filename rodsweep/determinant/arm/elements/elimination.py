@@ -12,11 +12,12 @@ from .settings import ARM_ELEMENT_SETTINGS, MINOR_COUNT
 @compiled
 def fill_elimination_matrices(F: float, c3: Array, g: Array, Q: Array, eliminations: Array) -> None:
     """Writes the matrix [M 1, M Q] of each element of a batch (lane) into `eliminations`, (STAGES, 1 +
-    STAGES, WIDTH), once for each initial value. M is the inverse of the matrix 1 + F Q c3 Q g.
+    STAGES, WIDTH). It is repeated for each initial value. M is the inverse of the matrix 1 + F Q c3 Q g.
 
-    M eliminates theta^m and y^m: M Q integrates the rates of theta^s and y^theta; M 1, 1: vector of ones, is
-    the contribution of a start value of 1. Q: matrix of integrals from 0 to each Gauss point, (STAGES,
-    STAGES). c3, g: coefficients at the Gauss points times the length of the element, (STAGES, LANES).
+    M eliminates theta^m and y^m: M Q integrates the rates of theta^s and y^theta; M 1, with the vector of
+    ones 1, is the contribution of an initial value of 1. Q: matrix of integrals from 0 to each Gauss point,
+    (STAGES, STAGES). c3, g: coefficients at the Gauss points times the length of the element, (STAGES,
+    LANES).
     """
     stages = ARM_ELEMENT_SETTINGS.stage_count
     integrands = np.empty((stages, ARM_ELEMENT_SETTINGS.lane_count * stages))

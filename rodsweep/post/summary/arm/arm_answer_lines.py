@@ -125,7 +125,7 @@ def _threshold_lines(arms: PointSelection) -> TextLines:
 def _flutter_lines(
     arms: PointSelection, loads: np.ndarray, ends: np.ndarray, frequency: np.ndarray
 ) -> TextLines:
-    """Lines about flutter. loads: of flutter, ends: of the searches, in SI; frequency: in Hz. All (n,)."""
+    """Lines about flutter. Flutter loads and the ends of searches: SI units; frequency: Hz; (n,) each."""
     flutter_count = int(np.isfinite(loads).sum())
     search = f" up to {si_load_range_text(arms, ends)}" if np.isfinite(ends).any() else ""
     if not flutter_count:

@@ -100,7 +100,7 @@ class NormalDerivatives:
     mesh: OrbitMesh
     """Mesh of the derivative `orbit_derivative`."""
     difference_quotient_distance: float
-    """Distance of the two cycles whose difference quotient gives the derivatives."""
+    """Distance between the two cycles whose difference quotient gives the derivatives."""
     contraction_rate: float = inf
     """Ratio of successive corrections, divided by the cycle's relative distance from the orbit of the matrix;
     inf if unknown."""
