@@ -237,8 +237,8 @@ def time_file_and_memory_totals(m: Measurement) -> dict[str, float]:
 
 
 def time_growth_exponent(start: Measurement, small: Measurement, large: Measurement) -> float:
-    """Exponent p of growth, t(n) - t(n0) ~ (n - n0)^p; t(n): time of a sweep of n points, n0: points of
-    `start`.
+    """Exponent p of growth, t(n) - t(n0) ~ (n - n0)^p; t(n): time of a sweep of n points, n0: number of
+    points of `start`.
 
     start: the smallest sweep. small, large: sweeps of two successive sizes. Returns nan if `small` is
     `start`, or if the time of a sweep is not above the time of `start`.

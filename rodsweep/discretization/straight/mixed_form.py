@@ -117,7 +117,7 @@ class MixedForm(RodOnMesh):
         return self.stresses(X), self.layout.velocities(X)
 
     def bilinear_map(self, X: Values, Y: Values) -> Values:
-        """The symmetric bilinear form B(X, Y) of the quadratic terms; X, Y and result: (..., unknowns)."""
+        """The symmetric bilinear map B(X, Y) of the quadratic terms; X, Y and result: (..., unknowns)."""
         S, U = self.stresses_and_velocities(X)
         T, V = self.stresses_and_velocities(Y)
         CS = self._compliance_times_stress(S)

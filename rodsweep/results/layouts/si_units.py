@@ -21,8 +21,8 @@ HERTZ = "Hz"
 
 
 class SIUnit(NamedTuple):
-    """SI unit of a result. The dimensionless unit is the product of the arm's quantities in `factors` divided
-    by the product of the quantities in `divisors`.
+    """SI unit of a result. The unit of its dimensionless value is the product of the arm's quantities in
+    `factors` divided by the product of the quantities in `divisors`.
 
     Dimensionless frequencies are angular; the conversion to Hz contains 2 pi.
     """
@@ -32,8 +32,8 @@ class SIUnit(NamedTuple):
     divisors: tuple[str, ...] = ()
 
     def scale(self, quantities: Mapping[str, Any]) -> NDArray[Any]:
-        """The dimensionless unit in SI units, () or (n,). quantities: the quantities of the arm by name, ()
-        or (n,) each."""
+        """Factor from dimensionless values to values in `unit`, () or (n,). quantities: quantities of the
+        arm by name, in SI units, () or (n,) each."""
         numerator = prod(quantities[name] for name in self.factors)
         denominator = prod(quantities[name] for name in self.divisors)
         return np.asarray(numerator / (2 * np.pi * denominator if self.unit == HERTZ else denominator))

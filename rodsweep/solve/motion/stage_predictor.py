@@ -38,7 +38,8 @@ from .time_scheme import EXTRAPOLATION_POINTS
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StagePredictorSettings(KernelConstants):
-    """Settings for the prediction of Runge-Kutta stages and for the state of Newton's matrix."""
+    """Settings for the prediction of Runge-Kutta stages and of the state at which Newton's matrix is
+    assembled."""
 
     max_extrapolated_step_ratio: float = 2.0
     """Stages are extrapolated only if this step is at most `max_extrapolated_step_ratio` times as long as the
@@ -60,7 +61,7 @@ UNUSED_POINT = -1
 def extrapolation_points_of(arkimex_type: str) -> NDArray[np.int64]:
     """Indices of the stages through which each stage is extrapolated, for the ARKIMEX type `arkimex_type`,
     (MAX_STORED_STAGES, MAX_EXTRAPOLATION_POINTS); unused entries are UNUSED_POINT. Stage k of this step has
-    the index k, stage k of the last step the index MAX_STORED_STAGES + k."""
+    the index k, stage k of the previous step the index MAX_STORED_STAGES + k."""
     points = np.full((MAX_STORED_STAGES, MAX_EXTRAPOLATION_POINTS), UNUSED_POINT)
     for stage, (current_stages, last_stages) in EXTRAPOLATION_POINTS.get(arkimex_type, {}).items():
         known_points = [*current_stages, *(MAX_STORED_STAGES + k for k in last_stages)]
