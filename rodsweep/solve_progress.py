@@ -53,8 +53,8 @@ class _SolvePart(NamedTuple):
 
 
 _listeners: ContextVar[tuple[tuple[Listener, int], ...]] = ContextVar("listeners", default=())
-"""Pairs (listener, number of parts that enclose the listener's `with` block), from the outermost block
-inwards."""
+"""Pairs (listener, number of the `solve_part` blocks around the `reporting_to` block of the listener), from
+the outermost listener inwards."""
 _solve_parts: ContextVar[tuple[_SolvePart, ...]] = ContextVar("parts", default=())
 
 

@@ -17,7 +17,7 @@ from .value import ExponentDerivatives, determinant_from_even_sum
 
 class DispersionCoefficientDerivatives(NamedTuple):
     """First and second derivatives by p of T = c2 + gamma3, N = F g, G = g nu and X = c2 gamma3, the
-    coefficients of D(w). T is linear in p."""
+    coefficients of D(w), with g = nu + F c2. T is linear in p."""
 
     T_p: float
     """dT/dp, T = c2 + gamma3."""

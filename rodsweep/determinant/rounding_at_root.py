@@ -28,7 +28,8 @@ from .exponents import (
 
 
 class _DispersionTerms(NamedTuple):
-    """T, N (`P_squared_w`), M and P^2 (`P_squared`) of a rod at w; rounding errors of M, of P^2 and of N."""
+    """T, N = d(P^2)/dw (`P_squared_w`), M and P^2 (`P_squared`) of a rod at w, as in
+    `rodsweep.determinant.value`; rounding errors of M, of P^2 and of N."""
 
     T: float
     P_squared_w: complex

@@ -39,7 +39,8 @@ class NodalRod(NamedTuple):
 
 
 class Jumps(NamedTuple):
-    """Nodes at which the material jumps, (k,), and the material on both sides of each jump, (k, 2, 7)."""
+    """Nodes at which the material jumps, (k,), and the material on both sides of each jump, (k, 2, 7), with
+    the columns `JUMP_SIDE_COLUMNS`."""
 
     jump_nodes: IntegerArray
     """Indices of the nodes at which the material jumps, increasing, (k,)."""

@@ -113,7 +113,7 @@ class ExportPanel:
         self.show_texts()
 
     def _config(self) -> str:
-        """Config for the task that the user has chosen."""
+        """Config, as YAML text, for the task that the user has chosen."""
         text = self._state.yaml(self.task.value)
         return text + FILM_COMMANDS_COMMENT if self.task.value == CONFIG_TASKS[0] else text
 

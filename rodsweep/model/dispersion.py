@@ -4,8 +4,8 @@ A wave exp(i kappa u) with K = kappa^2 grows at the root w(K) of
 
     gamma3 c2 w^2 + [(c2 + gamma3) K + g nu] w + K^2 - F g K = 0.
 
-The largest growth rate is used as a start of the search for eigenvalues of the finite rod, the wave number of
-this wave for the choice of the mesh. Both numbers are estimates only.
+Here g = nu + F c2. The largest growth rate is used as a start of the search for eigenvalues of the finite
+rod, the wave number of this wave for the choice of the mesh. Both numbers are estimates only.
 """
 
 import math
@@ -143,9 +143,9 @@ def _scaled_peak_growth_and_wave_number(
     """Returns (growth rate, wave number) of the most amplified wave for k3 = gamma2 = 1; the rate is 0 if
     every wave decays.
 
-    max_K: F g >= 0; waves with a larger K = kappa^2 decay. damping_at_0: g nu, negative only for a pulled rod
-    (F < 0). c2, gamma3: shear compliance and rotational drag. All arguments are numbers or arrays of one
-    shape; the results have this shape.
+    max_K: F g >= 0, g = nu + F c2; waves with a larger K = kappa^2 decay. damping_at_0: g nu, negative only
+    for a pulled rod (F < 0). c2, gamma3: shear compliance and rotational drag. All arguments are numbers or
+    arrays of one shape; the results have this shape.
     """
     # The closed formula needs a damped limit K = 0; a strongly pulled rod may not have one.
     if not np.min(damping_at_0) > 0:
@@ -173,9 +173,9 @@ def _scaled_peak_growth_and_wave_number(
 def _sampled_growth_and_wave_number(
     max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any
 ) -> tuple[Array, Array]:
-    """`_scaled_peak_growth_and_wave_number` by comparison of WAVE_NUMBER_SAMPLE_COUNT wave numbers. On a
-    pulled rod with g < 0 the growth rate may have a maximum at K = 0 only, or no maximum. Arguments: as in
-    `_scaled_peak_growth_and_wave_number`, (..., 1)."""
+    """`_scaled_peak_growth_and_wave_number` by comparison of WAVE_NUMBER_SAMPLE_COUNT wave numbers, for rods
+    with g = nu + F c2 < 0: under such a pull the growth rate, as a function of the wave number, may have its
+    maximum at 0 or none. Arguments: as there, with the shape (..., 1)."""
     product = c2 * gamma3
     K = max_K * SQUARED_WAVE_NUMBER_RATIOS
     # Both branches of each `where` are evaluated, also where they divide by 0.

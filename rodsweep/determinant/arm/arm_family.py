@@ -31,7 +31,8 @@ class ArmFamilySettings(KernelConstants):
     """Settings for the number and spacing of the arms from which a family is interpolated."""
 
     arm_counts: tuple[int, ...] = (12, 17, 24, 24, 34)
-    """Number of arms in each trial. 12 suffice on 21 of 24 random paths from 0 to three times a load."""
+    """Number of arms between which propagators are interpolated, in each successive trial. 12 suffice on 21
+    of 24 random paths from 0 to three times a load."""
     log_spacing_scales_over_interval: tuple[float, ...] = (
         LOG_SCALE_OF_LINEAR_SPACING,
         LOG_SCALE_OF_LINEAR_SPACING,

@@ -105,7 +105,8 @@ def _newton_from_guess(guess: complex, level: PropagatorsUpToW, last: float) -> 
 def _newton_from_guesses(
     guesses: Complex, level: PropagatorsUpToW, last: Array
 ) -> tuple[Complex, Array, Array]:
-    """Results of `_newton_from_guess` for all guesses, (n,) each. last: length of the previous step, (n,)."""
+    """Results (w, errors, lengths of the last steps) of `_newton_from_guess` for all guesses, (n,) each.
+    level: W and the propagators valid for |w| <= W. last: length of the previous step, (n,)."""
     w = np.empty(len(guesses), np.complex128)
     errors = np.empty(len(guesses))
     steps = np.empty(len(guesses))
@@ -136,7 +137,8 @@ def _parabola_roots_by_propagators(middle: complex, level: PropagatorsUpToW) -> 
 
 
 def _propagators_for_second_derivative(w: complex, determinant: ArmDeterminant) -> PropagatorsUpToW:
-    """Returns (W, propagators) that are valid for D and D'' at w."""
+    """Returns (W, propagators): the cached or new propagators of the arm that are valid for |v| <= W, with W
+    large enough for D and D'' at w."""
     return determinant.propagators_for((1 + DETERMINANT_SETTINGS.second_derivative_step_over_w) * abs(w))
 
 

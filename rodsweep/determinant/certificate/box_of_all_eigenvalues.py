@@ -65,9 +65,9 @@ def frequency_bound(rod: Rod) -> float:
     """Upper bound of |Im w| of all eigenvalues with Re w >= 0, in 1/tau2; inf if no bound exists. It is the
     smallest a^2 of the module docstring over all weights rho.
 
-    For g >= 0 it is F^2 g/(nu + |F| sqrt(c2 gamma3)), also for c2 = 0 or gamma3 = 0. For g < 0 (a pull beyond
-    the shear stiffness) the larger entry of the maximum is minimised over rho; c2 gamma3 = 0 then gives no
-    bound.
+    With g = nu + F c2 >= 0 it is F^2 g/(nu + |F| sqrt(c2 gamma3)), also for c2 = 0 or gamma3 = 0. For g < 0
+    (a pull beyond the shear stiffness) the larger entry of the maximum is minimised over rho; c2 gamma3 = 0
+    then gives no bound.
     """
     drag = rod.c2 * rod.base_rotational_drag
     drag_term = abs(rod.F) * sqrt(drag)

@@ -170,7 +170,8 @@ def fluid_inertia_effect(arm: SlenderArm, omega: Array, drag: Drag) -> Effect:
 
 
 def compression_effect(arm: SlenderArm, F: Array) -> Effect:
-    """Relative change of the length of the arm, abs(F)/k1, of the shape of F. F: in k3/L^2, (...,)."""
+    """Relative change of the length of the arm, abs(F)/k1, as an array of the shape of F. F: in k3/L^2,
+    (...,)."""
     return _effect_independent_of_viscosity("compression", abs(F) / arm.k1, COMPRESSION_LIMIT)
 
 

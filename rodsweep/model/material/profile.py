@@ -20,7 +20,8 @@ MIN_ROW_DISTANCE = 1e-6
 """Smallest distance in u between two rows that are no jump. All spectra of sixty random arms with two rows at
 this distance were solved; at 1e-7 no elements resolved eight of the arms."""
 ROW_DISTANCE_TOLERANCE = 1e-9
-"""Allowed relative rounding error of a distance `MIN_ROW_DISTANCE` between two values of u."""
+"""Relative tolerance of the test for `MIN_ROW_DISTANCE`: two rows of a profile may be closer by this
+fraction, because the difference of two values of u has a rounding error."""
 RADIUS_POWERS = {"k1": 2, "k2": 2, "k3": 4, "gamma3": 2}
 """Exponents of the radius in the stiffnesses and drags of a cone; for missing names the exponent is 0."""
 

@@ -34,7 +34,8 @@ FIRST_CROSSING_WORDS = {
 LATER_CROSSING_WORDS = {"hopf": "flutter again from", "restabilization": "stable again from"}
 """Phrase before the force at which a later window of flutter starts ("hopf") or ends ("restabilization")."""
 OSCILLATION_END_KINDS = ("real_again", "real_leads")
-"""Kinds of crossings of a stable rod above which a real eigenvalue leads."""
+"""Kinds of thresholds of a stable rod at which the leading pair of eigenvalues becomes real, or is overtaken
+by a real eigenvalue."""
 
 
 def oscillation_end_index(kinds: Sequence[str]) -> int | None:

@@ -32,8 +32,8 @@ MESSAGE_NUMBER_PATTERN = re.compile(r"\d[\d.]*(?:e[+-]?\d+)?")
 """Matches a number in a message. Messages that differ only in numbers are treated as the same reason of
 failure."""
 FAILED_POINT_PARAMETER_DIGITS = 9
-"""Number of digits shown of a computed parameter of a failed point, unless another point would read the
-same."""
+"""Number of digits shown of a computed parameter of a failed point. All digits are shown if a second point
+would have the same text."""
 MAX_TYPED_DIGITS = 15
 """Largest number of digits of parameters that are shown as typed."""
 MAX_FAILURE_REASONS = 20

@@ -190,10 +190,10 @@ def _append_next_cycle(
 def _end_or_shorter_step(
     start: BranchCycle, end: BranchCycle, limits: BranchLimits
 ) -> BranchCycle | BranchEnd | None:
-    """The end of the branch, if it reaches its mirror image before `end`, or an end of the range just before
-    its mirror image; or `start` with a shorter step, if the step to `end` is too long to locate this end or
-    leads to another branch; None if the branch continues through `end`. Raises Unsolvable if no shorter step
-    is allowed."""
+    """The end of a branch that reaches its mirror image between `start` and `end`, or leaves the range just
+    before; `start` with a shorter next step, if this step is too long to locate such an end or leads to
+    another branch; None if the branch continues through `end`. Raises Unsolvable if no shorter step is
+    allowed."""
     # Beyond its end the branch continues through the mirror images of its cycles.
     if (replacement := end_or_shorter_step_at_mirror_image(start, end, limits)) is not None:
         return replacement

@@ -19,10 +19,10 @@ from .settings import BRANCH_ERROR_SETTINGS, BRANCH_MESH_SETTINGS
 def expected_error_growth(
     measured: BranchCycle, points: Sequence[BranchCycle], measured_end: BranchCycle
 ) -> Array:
-    """Expected growth factors of the errors in space and in time, (2,), from the last cycle of `points` to
-    the next measured cycle, by the growth of the coefficient tails over the last steps, or of the measured
-    errors of the parameter if these have grown more. measured, points: as in
-    `cycles_with_errors_within_accuracy`. measured_end: the last cycle of `points` with measured errors."""
+    """Factors by which the errors in space and in time, (2,), are expected to grow from the last cycle of
+    `points` to the next cycle whose errors are measured: the growth of the coefficient tails over the last
+    steps, or the growth of the measured errors of the parameter if larger. measured: last cycle before
+    `points` with measured errors. measured_end: the last cycle of `points`, with measured errors."""
     end = points[-1]
     # Tails are compared on one mesh.
     known = next(
@@ -52,7 +52,7 @@ def mesh_for_next_cycles(end: BranchCycle, growth: Array, accuracy: float) -> Or
     """The mesh for the next cycles of the branch after `end`, whose errors were measured; None if the mesh of
     `end` remains in use, because it is expected to suffice up to the next measured cycle and no much cheaper
     mesh does, or because no sufficient mesh is allowed. growth: expected growth factors of the errors in
-    space and in time up to there, (2,). accuracy: relative accuracy of the cycles."""
+    space and in time up to the next measured cycle, (2,). accuracy: relative accuracy of the cycles."""
     mesh = end.calibration.mesh
     expected = end.calibration.with_grown_errors(growth)
     cheapest = expected.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_per_accuracy * accuracy)

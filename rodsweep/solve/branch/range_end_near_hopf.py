@@ -133,11 +133,11 @@ def _deviations_of_normal_form(
     distance: distance of the cycle's parameter coordinate from the Hopf point. start: a solved cycle of the
     branch near the Hopf point.
 
-    Near the Hopf point these deviations are proportional to the distance. Every cycle there gives an
-    estimate: its deviation, scaled to the distance. An estimate has two errors: the scaled error of the
-    cycle, and the effect of higher powers of the distance, by which it differs from the straight line
-    through two successive estimates at the Hopf point. The estimate with the smallest sum of both errors is
-    returned.
+    Near the Hopf point these deviations are proportional to the distance. Every solved cycle there gives an
+    estimate: its own deviation, scaled to `distance`. The estimate has two errors: the scaled error of the
+    cycle, and the effect of higher powers of the distance. The second error is the change of the estimate
+    from this cycle to the Hopf point, extrapolated linearly from two successive cycles. The estimate with the
+    smallest sum of both errors is returned.
     """
     last_fraction = inf
     last_estimate: Array = np.zeros(2)

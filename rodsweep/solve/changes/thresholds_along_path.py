@@ -27,8 +27,8 @@ class ThresholdSettings:
     """Settings of the search for all thresholds along a path."""
 
     sample_to_crossing_path_fraction: float = 1e-4
-    """Samples are added at this distance, as a fraction of the path, on both sides of a crossing whose pair
-    must lead but does not lead in the list."""
+    """Distance, over the length of the path, of samples added beside a crossing whose pair must lead, as the
+    only unstable mode, but does not lead according to the exchanges found."""
     max_relative_merged_gap: float = 1e-5
     """Undecided boxes are merged if the gap between them is at most this number times the parameter."""
 
@@ -81,7 +81,7 @@ class PathCrossings:
     determinant_evaluation_count: int = 0
 
     def restricted_to(self, search_end: SearchEnd) -> "PathCrossings":
-        """The crossings and gaps up to `search_end`, an earlier end of the search or the current end."""
+        """The crossings and undecided intervals up to `search_end`, at or before the current end."""
         if search_end.p == self.search_end.p:
             return self
         coordinate = self.path.coordinate
@@ -217,8 +217,8 @@ def _crossings_by_covering(path: ParameterPath, low: float, high: float) -> Path
 def _crossings_contradicting_exchanges(
     path: ParameterPath, crossings: tuple[Threshold, ...], oscillates: bool, unstable_count: int
 ) -> list[float]:
-    """Path variables of the crossings whose pair must lead, but does not lead according to the exchanges.
-    oscillates: whether a pair leads at the start. unstable_count: number of unstable modes at the start."""
+    """Path variables of the crossings whose pair must lead, as the only unstable mode, but does not lead by
+    the exchanges. oscillates: whether a pair leads at the start. unstable_count: its value at the start."""
     missed_p = []
     for crossing in crossings:
         if crossing.kind.switches_real_and_complex:

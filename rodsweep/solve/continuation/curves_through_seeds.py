@@ -29,8 +29,8 @@ class CurveTracingProblem(Protocol[AnyCurve]):
         """The curve through the seed point `seed`; None if this curve cannot be traced."""
 
     def distance_along_row(self, curve: AnyCurve, seed: int) -> float:
-        """Distance of the seed point `seed` from a curve along its row, divided by the length of a row; inf
-        if no point of the curve is near."""
+        """Distance between the seed point `seed` and a curve along the row of the parameter plane through
+        this point, as a fraction of the length of a row; inf if no point of the curve is near."""
 
     def are_identical(self, first: AnyCurve, second: AnyCurve) -> bool:
         """Whether the curves `first` and `second` are identical."""
@@ -39,8 +39,8 @@ class CurveTracingProblem(Protocol[AnyCurve]):
 @dataclass(frozen=True, slots=True)
 class TracedCurves(Generic[AnyCurve]):
     """All curves through the seed points of a plane. max_seed_distance_per_row_length: largest distance of a
-    seed point from its curve, divided by the length of a row; 0 if no seed point lies on a curve.
-    untraced_seed_count: number of seed points that lie on no traced curve."""
+    seed point from its curve, along its row of the plane, divided by the length of a row; 0 if no seed point
+    lies on a curve. untraced_seed_count: number of seed points that lie on no traced curve."""
 
     curves: tuple[AnyCurve, ...]
     max_seed_distance_per_row_length: float

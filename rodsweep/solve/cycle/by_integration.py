@@ -157,7 +157,7 @@ class _IntegrationUntilSettled:
         raise NoCycleFound(IntegratedCycleStatus.not_settled, message)
 
     def _max_run_duration(self, returns: int) -> float:
-        """Largest duration of a run over `returns` returns, in tau2."""
+        """Largest duration, in tau2, of a run in which the tip is expected to return `returns` times."""
         max_ratio = TRANSIENT_SETTINGS.max_actual_to_expected_run_duration
         return max_ratio * returns * self.return_times.time_per_return
 
@@ -219,8 +219,9 @@ class _IntegrationUntilSettled:
     def _errors_with_limiting_rod_error(
         self, settled: SettledMotion, cycle: CycleMotion, errors: CycleErrors
     ) -> CycleErrors:
-        """The errors `errors` of the cycle `cycle` plus the error of integrating a nearby rod instead of a
-        limiting rod; raises NoCycleFound. settled: settled motion on this cycle."""
+        """The errors `errors` of `cycle`, increased by the effect of replacing a limiting rod (k1 = inf, k2 =
+        inf or gamma3 = 0) by a nearby rod that can be integrated; measured by a second nearby rod. Raises
+        NoCycleFound. settled: settled motion on this cycle."""
         self.rod = rod_for_time_integration(
             self.limiting_rod, INTEGRATION_SETTINGS.second_rod_limit_distance_ratio
         )

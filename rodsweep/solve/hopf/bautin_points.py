@@ -203,8 +203,8 @@ class HopfNormalForms:
         self, hopf_point: _NormalFormOnCurve, index_before: int, position_error: Array
     ) -> BautinPoint:
         """The generalised Hopf point at `hopf_point`, with errors of both parameters. index_before: index of
-        the last stored point before this point. position_error: error of the position along the chord,
-        (3,)."""
+        the last stored point before this point. position_error: error vector of the zero along the chord
+        between two stored points, in the scaled coordinates of the curve, (3,)."""
         solution = hopf_point.boundary_point
         axes = self.boundary.plane.axes
         tangent = solution.tangent

@@ -75,7 +75,8 @@ def converged_modes(
 
 
 def _with_errors_from_coarse(coarse: ModeVectors, fine: ModeVectors) -> ModeVectors:
-    """`fine` with their differences from `coarse` added to their rounding errors."""
+    """`fine` with larger error estimates: to each rounding error of `fine`, the difference between the modes
+    of `fine` and of `coarse` is added."""
     return replace(
         fine,
         mode_error=fine.mode_error + largest_relative_change(coarse.fields, fine.fields),

@@ -24,8 +24,8 @@ class TimeGradingSettings:
     """The two amplitudes of a grading are multiples of this step, so that similar orbits share their
     meshes."""
     max_grading_amplitude: float = 0.6
-    """Largest amplitude of dt/dtau - 1: the longest interval is at most four times as long as the
-    shortest."""
+    """Largest amplitude of the grading dt/dtau - 1, t: time, tau: mesh time. The longest interval is then at
+    most four times as long as the shortest."""
     min_interval_tail_ratio: float = 1e-4
     """Lower limit of the tail of an interval divided by the largest tail: smaller tails may be rounding
     errors, and have little effect on a smooth grading."""
@@ -147,8 +147,9 @@ def samples_in_time(c: Complex, grading: TimeGrading, part_count: int) -> Array:
 def _mesh_time_waves_at_equal_times(
     coefficient_count: int, grading: TimeGrading, part_count: int
 ) -> tuple[Array, Array]:
-    """Cosines and sines of 2 pi k tau, (m, `coefficient_count`) each, k from 0 to `coefficient_count` - 1, at
-    the mesh times tau of m equidistant times of the period."""
+    """Cosines and sines of 2 pi k tau, (samples, `coefficient_count`) each, k from 0 to `coefficient_count` -
+    1, at the mesh times tau of equidistant times of the period; the number of samples is
+    `samples_per_time_node` (`coefficient_count` - 1). part_count: number of solved parts in a period."""
     sample_count = TIME_GRADING_SETTINGS.samples_per_time_node * (coefficient_count - 1)
     part, times = np.divmod(part_count * np.arange(sample_count), sample_count)
     mesh_times = (part + grading.mesh_times(times / sample_count)) / part_count

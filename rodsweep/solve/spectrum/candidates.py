@@ -39,8 +39,8 @@ class CandidateSettings(KernelConstants):
     `relative_line_distance_from_last_w` follows in case another eigenvalue lies between w and the first
     line."""
     min_relative_gap: float = 1e-6
-    """No line is drawn between two real parts if their distance, divided by the modulus of the left real
-    part, is at most this."""
+    """A vertical line, right of which eigenvalues are counted, is not placed between two neighbouring real
+    parts whose distance, divided by the modulus of the left one, is at most this number."""
     max_relative_same_root_distance: float = 1e-6
     """Roots found with two shifts are the same root if their distance is at most this times |w|. Taking two
     roots for one root is safe, because the count then disagrees; one root taken for two could agree with a
@@ -48,8 +48,8 @@ class CandidateSettings(KernelConstants):
     max_count_lines: int = 3
     """Maximum number of lines tried for the count of one rod."""
     proof_line_distance_in_errors: float = 3.0
-    """Distance from the last wanted eigenvalue w to the line of a proof without a count: this multiple of the
-    error of w plus `relative_proof_line_distance` * |w|, to the left."""
+    """Distance, to the left of the last wanted eigenvalue w, of the line of a proof from D'/D at real points
+    (`completeness`): this multiple of the error of w, plus `relative_proof_line_distance` * |w|."""
     relative_proof_line_distance: float = 1e-9
     """Second part of the distance that `proof_line_distance_in_errors` describes, divided by |w|."""
 
@@ -120,7 +120,8 @@ class CountComparison:
 
 @dataclass(frozen=True, slots=True)
 class CheckedCandidates:
-    """Candidates, with the comparison with a count if requested, and with their largest error."""
+    """Roots of D found by one solve, the comparison of their number with a count of eigenvalues (None if no
+    count was requested), and their largest error."""
 
     candidates: Candidates
     """Roots of D found by one solve."""
@@ -182,8 +183,9 @@ def compare_with_count(problem: TransverseProblem, roots: RootsOfD, mode_count: 
 
 
 def line_for_proof(last_wanted: complex, error: float) -> float:
-    """Real part <= 0 of the line of a proof without a count, to the left of the last wanted eigenvalue and of
-    all unstable eigenvalues. last_wanted: the last wanted eigenvalue. error: its absolute error."""
+    """Real part <= 0 of a vertical line to the left of the last wanted eigenvalue and of all unstable
+    eigenvalues. The module `completeness` proves, without a winding number, that all eigenvalues right of
+    this line are known. last_wanted: the last wanted eigenvalue. error: its absolute error."""
     return min(
         last_wanted.real
         - CANDIDATE_SETTINGS.proof_line_distance_in_errors * error

@@ -59,7 +59,7 @@ class TransverseProblem(ABC):
     is_count_slow: ClassVar[bool]
     largest_growing_wave_number: float
     additional_eigenvalue_count: int = 0
-    """Number of eigenvalues requested from the first mesh besides the modes, for a proof without a count."""
+    """Number of eigenvalues requested beyond the modes from the first mesh, for a proof by `completeness`."""
 
     def move_shift_right(self) -> None:
         """Moves the shift farther to the right, so that the eigenvalues nearest to the shift are the
@@ -185,8 +185,8 @@ class ArmProblem(TransverseProblem):
         return graded_towards_ends(self.rod, finer_arm_mesh(self.rod, mesh))
 
     def refined_roots(self, mesh_eigenvalues: Complex, mesh: Any) -> RootsOfD:
-        """Roots of D refined from `mesh_eigenvalues`, (n,); if a proof is requested, and until one
-        fails, only from the eigenvalues that the proof needs."""
+        """Roots of D refined from `mesh_eigenvalues`, (n,), with the same indices. If a proof of completeness
+        is requested and has not failed before, only the eigenvalues that the proof needs are refined."""
         needed_mask, max_abs_w = self._needed_mask_and_max_abs_w(mesh_eigenvalues)
         max_q_of_unit_element = RESOLUTION_SETTINGS.max_wave_number_per_node * mesh.order
         max_end_q = max_q_of_unit_element * (1 / mesh.lengths[[0, -1]])

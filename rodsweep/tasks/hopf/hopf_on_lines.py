@@ -70,7 +70,8 @@ class HopfSearchLine:
 
 
 def hopf_search_lines_of_points(points: Points) -> list[HopfSearchLine]:
-    """Lines of points of a file, without repetition. Rods that differ only in gamma1 share a line."""
+    """Lines, without repetition, on which the points of a file lie: along each parameter, the rods that
+    differ only in this parameter. Rods that differ only in gamma1 share a line."""
     names = [name for name in TRANSVERSE_PARAMETER_NAMES if name in points.parameter_values_of_rods]
     return [line for name in names for line in _hopf_search_lines_along(points, name, names)]
 

@@ -34,12 +34,14 @@ from .settings import CONTOUR_SETTINGS
 
 
 class PhaseNode(NamedTuple):
-    """A point w on the contour with a tangent h of log D.
+    """A point w on the contour of a count, with a tangent h of log D.
 
     phase_factor, log_derivative: D/|D| and D'/D, with the known eigenvalues divided out of D.
-    dominant_exponent_and_slope: (Phi, dPhi/dw) if h contains the dominant wave, else (0, 0). valid_radius:
-    distance from w within which the error of h is below pi/2. circle_radius: radius of the circle from which
-    `valid_radius` follows; 0 if it follows from the hull."""
+    dominant_exponent_and_slope: (Phi, dPhi/dw) of the dominant wave exp(Phi) of D if h contains Phi, else (0,
+    0). valid_radius: distance from w within which the error of h is below pi/2. circle_radius: radius of the
+    circle from which `valid_radius` follows; 0 if the radius follows from the distance to the hull of the
+    spectrum.
+    """
 
     w: complex
     phase_factor: complex
@@ -51,7 +53,8 @@ class PhaseNode(NamedTuple):
 
 @compiled
 def linearised_log_determinant(node: PhaseNode, v: complex, samples: ExponentSamples) -> complex:
-    """The tangent h(v) of log D at a node, without the constant log D(w) (see the module docstring)."""
+    """The tangent h(v) of log D at `node`, without the constant log D(w), at a point v near w (see the module
+    docstring). samples: the arm's coefficients at quadrature points, for the dominant wave."""
     Phi, slope = node.dominant_exponent_and_slope
     linear_change = (node.log_derivative - slope) * (v - node.w)
     return linear_change + dominant_wave_exponent(v, samples) - Phi if Phi != 0 else linear_change
@@ -151,8 +154,8 @@ def _dominant_exponent_and_slope(w: complex, rho: float, samples: ExponentSample
 
 @compiled
 def _valid_radius(rho: float, M: float, excess: float) -> float:
-    """Distance from w within which f changes by less than `excess` |D|, if |f| <= M |D| on the circle of
-    radius rho about w."""
+    """Distance from w within which f changes by less than `excess` |D(w)|, if |f| <= M |D(w)| on the circle
+    of radius rho about w. f(v) = D(v) exp(-h(v)), with f'(w) = 0, see the module docstring."""
     # As f'(w) = 0, Cauchy's estimate is |f(v) - f(w)| <= M |D| r^2/(rho (rho - r)), solved here for r.
     q = excess / M
     return rho * (math.sqrt(q * q + 4 * q) - q) / 2 if q > 0 else 0.0

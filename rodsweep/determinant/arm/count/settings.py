@@ -1,4 +1,5 @@
-"""Settings for counts of an arm's eigenvalues right of a vertical line, and for lines that none crosses."""
+"""Settings for counts of an arm's eigenvalues right of a vertical line, and for proofs that no eigenvalue
+crosses such a line as a parameter varies."""
 
 import math
 from dataclasses import dataclass
@@ -22,7 +23,8 @@ class ContourSettings(KernelConstants):
     circle_safety_factor: float = 1.5
     """Safety factor on the largest |f| at the points of a circle, for larger values between the points."""
     max_D_change_ratio: float = 0.9
-    """The change of f within the valid radius of a node is at most this number times |D|."""
+    """Within the valid radius of a node w, f(v) = D(v) exp(-h(v)) differs from f(w) by at most this number
+    times |D(w)|; h: tangent of log D, see `phase_node`."""
     rounding_safety_factor: float = 100.0
     """|rounding error of D| <= this number times `DeterminantValue.rounding_error`. Where |D| is below this
     bound, the valid radius of a node is 0."""
@@ -44,7 +46,8 @@ class ContourSettings(KernelConstants):
     max_nodes: int = 5000
     """Maximum number of nodes on all sides of the box; cones with tapers from 0.1 to 1 need 15 to 210."""
     distance_over_sum_of_valid_radii: float = 0.95
-    """Distance to the next node divided by the sum of the expected valid radii of both nodes."""
+    """Distance between neighbouring nodes on the contour of a count, divided by the sum of their expected
+    valid radii, within which the tangents of log D are accurate."""
     max_valid_radius_growth: float = 0.5
     """Largest expected growth of the valid radius per distance; the next node is at most 3.6 radii away."""
     min_valid_over_circle_radius: float = 0.2
@@ -55,7 +58,8 @@ class ContourSettings(KernelConstants):
     """Radius of the smallest circle at any node, in units of the length over which D changes. Every trial
     halves the radius."""
     max_circle_radius_over_w_scale: float = 48.0
-    """Radius of the largest circle at any node, in units of the length over which D changes."""
+    """Radius of the largest circle at any node, divided by the distance in w over which an exponent of D
+    changes by about 1 (`mean_wave_number_and_w_scale`)."""
     max_dominant_wave_radius_over_im_w: float = 0.8
     """Largest radius over Im w of circles that use the dominant wave; its branch points lie at Im w = 0."""
     max_shortened_over_previous_step: float = 0.9
@@ -96,7 +100,8 @@ class NoCrossingSettings(KernelConstants):
     """The line lies left of the last requested eigenvalue w, or left of the imaginary axis if Re w > 0, at
     the distance of this number times |w|."""
     between_arms_safety_factor: float = 1.5
-    """Safety factor on the largest change of f at the evaluated arms, for all arms between them."""
+    """Safety factor on the largest change of f between the evaluated arms, which covers all arms between
+    them; f(v, p): D over its known factors and its dominant change, see the module `no_crossing`."""
     max_divided_out_distance_over_radius: float = 3.0
     """Distance of a known eigenvalue from a node, divided by the radius of the node's disc, below which the
     eigenvalue is divided out of D."""
@@ -118,7 +123,8 @@ class NoCrossingSettings(KernelConstants):
     radius_divisor_after_failure: float = 1.5
     """After a disc on whose circle f changes too much, the radius is divided by this number."""
     min_radius_over_w_scale: float = 0.05
-    """Radius below which no disc is tried, in units of the length over which D changes near the real axis."""
+    """Radius below which no disc is tried, divided by the distance in w over which an exponent of D changes
+    by about 1 (`mean_wave_number_and_w_scale`) near the real axis."""
 
     field_ranges: ClassVar = {
         "arm_count": (2, math.inf),

@@ -54,7 +54,7 @@ def element_edges(W: float, squares: Array, tapers: Array, points: Array, breaks
 def _elements_per_length(W: float, squares: Array, tapers: Array, points: Array) -> Array:
     """Number of elements per length that the local exponents and the taper require, at the points of n arms,
     (points,). At each point the result is the largest number of all arms. squares: products of coefficients,
-    (4, n, points). tapers: (n,). points: (points,)."""
+    as in `element_edges`, (4, n, points). tapers: (n,). points: (points,)."""
     density = np.empty(len(points))
     for i in range(len(points)):
         waves = 0.0  # an upper bound of |q| for all |w| <= W
@@ -77,7 +77,7 @@ def _elements_per_length(W: float, squares: Array, tapers: Array, points: Array)
 def two_sum(a: Array, b: Array) -> tuple[Array, Array]:
     """Returns (a + b rounded to doubles, rounding error of this sum); the two numbers add up to a + b exactly
     (Knuth's two-sum). a, b: of any shapes that broadcast. Near a thin tip the rounding of u alone would
-    change the radius, and with it D, by more than all products."""
+    change the radius, and with it D, by more than all later rounding errors."""
     total = a + b
     rounded_b = total - a
     return total, (a - (total - rounded_b)) + (b - rounded_b)

@@ -15,8 +15,9 @@ class ArmElementSettings(KernelConstants):
     """Settings for the elements of an arm and for the cache of propagators."""
 
     max_exponent: float = 3.2
-    """Largest |q1 +- q2| h of an element of length h; these are the exponents of the minors. Twelve Gauss
-    points integrate exp(3.2) to 1e-19, with rounding errors like those of elements half as long."""
+    """Largest |q1 +- q2| h of an element of length h, for solutions exp(+-q1 u), exp(+-q2 u) of the linear
+    problem: their 2 x 2 minors grow like exp((q1 + q2) h). Twelve Gauss points integrate exp(3.2) to 1e-19,
+    with rounding errors like those of elements half as long."""
     max_exponent_excess_factor: float = 1.1
     """An element is halved if its largest exponent, integrated at its Gauss points, exceeds `max_exponent` by
     more than this factor: `max_terms` powers of w and twelve Gauss points suffice up to about 3.7."""

@@ -92,8 +92,8 @@ class JoinedFile:
     def _is_rounding_error(self, name: str, a: Any, b: Any, sources: Sequence[ResultHeader]) -> bool:
         """Whether two different values a and b of the variable `name` differ only by rounding: relatively by
         at most MAX_DIFFERENCE_PER_ACCURACY times the accuracy. Always True for error estimates and for values
-        that are not floats; always False for `status`, and for all variables if the plan has no groups and
-        one BLAS kernel computed all `sources`."""
+        that are not floats; always False for `status`, and for all variables if eigenvalues are not followed
+        from point to point and one BLAS kernel computed all `sources`."""
         kernels = {kernel for source in sources for kernel in blas_kernels_in(source.attributes)}
         if (len(kernels) < 2 and not self.plan.groups) or name == "status":
             return False

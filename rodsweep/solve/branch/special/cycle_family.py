@@ -36,10 +36,11 @@ from .special_point import SpecialPointKind
 class CycleFamily:
     """Two-parameter family of the cycles near a point of a curve of special points.
 
-    kind: fold or torus. row_parameter_axis: axis of the row parameter. scale: units of arc length.
-    branch_direction: direction of the branch in components (deflection, log period, parameter), (3,).
-    has_small_cycles: whether the fold test function is divided by the deflection, because a Hopf point is
-    near. workspace: memory of Newton's matrices."""
+    kind: fold or torus. row_parameter_axis: axis of the second parameter, whose value is fixed along a
+    branch. scale: units of arc length. branch_direction: direction of the branch in components (deflection,
+    log period, parameter), (3,). has_small_cycles: whether the fold test function is divided by the
+    deflection, because a Hopf point is near. workspace: memory of Newton's matrices.
+    """
 
     kind: SpecialPointKind
     row_parameter_axis: PlaneAxis

@@ -75,7 +75,8 @@ def _test_value_at_end(
     kind: SpecialPointKind, scale: ArcLengthScale, tangent: Array, point: BranchCycle
 ) -> float:
     """Value of the test function of special points of the kind `kind` at `point`, an end of a segment; raises
-    Unsolvable. scale, tangent: scale and tangent, (3,), at the start of the segment."""
+    Unsolvable. scale: units of the arc length. tangent: unit tangent of the branch at the start of the
+    segment, (3,)."""
     if kind == SpecialPointKind.fold:
         # The variable of the search is the arc length along `tangent`.
         rate = float(scale.directional_derivative(point.orbit, point.tangent) @ tangent)

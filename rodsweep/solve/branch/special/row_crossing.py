@@ -14,8 +14,8 @@ from .special_point import SpecialPoint, SpecialPointKind
 
 @dataclass(frozen=True, slots=True)
 class RowCrossing:
-    """A crossing of a curve with a row. row_index: index of the row. special_point: the special point of the
-    row on the curve, with its orbit on the mesh of the curve."""
+    """A crossing of a curve of special points with a row of a phase diagram. row_index: index of the row.
+    special_point: the point of the curve on this row, with its orbit on the mesh of the curve."""
 
     row_index: int
     special_point: SpecialPoint

@@ -70,7 +70,7 @@ class SecantSearch:
         """Whether the derivatives come from the previous point of the curve."""
         self.measured_curvature = derivatives.relative_test_function_curvature if derivatives else inf
         self.curvature = CURVE_SECANT_SETTINGS.curvature_growth_factor * self.measured_curvature
-        """Second derivative of the test function divided by the first; inf if unknown."""
+        """Estimate of abs(f''/f') of the test function f along the search line; inf if unknown."""
         self.measured_slopes: list[tuple[float, float]] = []
         """Measured derivatives of the test function: (middle of the two cycles, derivative)."""
         contraction = derivatives.contraction_rate if derivatives and not family.has_small_cycles else inf
@@ -137,8 +137,9 @@ class SecantSearch:
         return min(slope_error, 1.0) * abs(step)
 
     def _is_accurate_enough(self, error: float) -> bool:
-        """Whether a point at the distance `error` from the curve is accurate enough. Errors within the
-        tolerance of the test function are always small enough."""
+        """Whether a point is accurate enough whose distance from the curve, along the search line, is
+        estimated as `error`: within the tolerance of Newton's method for cycles, or with a displacement of
+        the parameter within its accuracy."""
         if error <= MINIMALLY_AUGMENTED_SETTINGS.relative_cycle_tolerance:
             return True
         parameter = abs(getattr(self.orbit.form.rod, self.family.scale.parameter_name))

@@ -22,8 +22,8 @@ class CurveIdentitySettings:
     identical."""
 
     max_distance_from_curve_per_row_length: float = 1e-6
-    """A special point of a row lies on a curve if its distance from the curve is at most this fraction of the
-    length of a row."""
+    """A special point lies on a curve if its distance from the curve, along its row of the parameter plane,
+    is at most this fraction of the length of a row."""
     max_chord_distance_per_row_length: float = 0.1
     """A special point can lie on the arc between two points of a curve only if its distance, along the row,
     from the interval of these two points is at most this fraction of the length of a row."""
@@ -37,8 +37,8 @@ class CurveIdentitySettings:
     length 1."""
     max_last_chord_distance_per_row_length: float = 1e-3
     """Between the last cycle of a curve and the Hopf point where the cycles vanish, a special point lies on
-    the curve if its distance, along the row, from the chord is at most this fraction of the length of a
-    row."""
+    the curve if its distance from the chord, along its row of the parameter plane, is at most this fraction
+    of the length of a row."""
     max_extrapolation_points: int = 4
     """Maximum number of points of the interpolating polynomial that predicts the next point, or the Hopf
     point where the cycles vanish."""
@@ -79,9 +79,9 @@ class CurveEndReason(IntEnum):
 class HopfEnd:
     """A Hopf point at which a curve of special points ends because the cycles vanish.
 
-    parameter_value: value of the parameter along a row, with the absolute error `error`.
-    row_parameter_value: value of the row parameter. period: period of the vanishing cycles, in tau2.
-    tip_y_max: their largest tip y, 0.
+    parameter_value: value of the branch parameter, which varies along a row of the plane, with the absolute
+    error `error`. row_parameter_value: value of the second parameter, fixed on a row. period: period of the
+    vanishing cycles, in tau2. tip_y_max: their largest tip y, 0.
     """
 
     parameter_value: float
@@ -95,11 +95,11 @@ class HopfEnd:
 class CurvePoint:
     """Stored quantities of a point of a curve of special points.
 
-    parameter_value: value of the parameter along a row, with the absolute error `error`.
-    row_parameter_value: value of the row parameter. row_coordinate: position of `row_parameter_value` on its
-    axis, from 0 to 1. period: in tau2. tip_y_max: largest tip y, in L. row_parameter_error_at_extremum:
-    absolute error of `row_parameter_value` where it is extremal along the curve, NaN at the point after an
-    extremum that could not be located, 0 elsewhere.
+    parameter_value: value of the branch parameter, which varies along a row of the plane, with the absolute
+    error `error`. row_parameter_value: value of the second parameter, fixed on a row. row_coordinate:
+    position of `row_parameter_value` on its axis, from 0 to 1. period: in tau2. tip_y_max: largest tip y, in
+    L. row_parameter_error_at_extremum: absolute error of `row_parameter_value` where it is extremal along the
+    curve, NaN at the point after an extremum that could not be located, 0 elsewhere.
     """
 
     parameter_value: float
@@ -136,9 +136,9 @@ class HalfCurve:
 @dataclass(frozen=True, slots=True)
 class TracedHalfCurve:
     """Result of following one half of a curve of special points. half_curve: None if the half could not be
-    followed. distances_along_row: distances of nearby special points from this half, in units of the length
-    of a row, by the index of the special point in the list of all special points. crossings: crossings of
-    this half with rows without a special point there."""
+    followed. distances_along_row: distances of nearby special points from this half along their rows, in
+    units of the length of a row, by the index of the special point in the list of all special points.
+    crossings: points at which this half crosses a row whose branches have no special point there."""
 
     half_curve: HalfCurve | None
     distances_along_row: dict[int, float] = field(default_factory=dict)

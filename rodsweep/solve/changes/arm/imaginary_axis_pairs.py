@@ -19,8 +19,9 @@ class ImaginaryAxisModeSettings:
     change of growth rate and of frequency to this fraction; else both ends may show different pairs. Two
     pairs that exchanged their parts agreed to 0.12 by chance."""
     max_growth_rate_per_frequency: float = 0.15
-    """A growing pair is expected among the modes of the other end of an interval if its growth rate there, by
-    its tangent, is at most this multiple of its frequency; the search for modes near the axis finds it."""
+    """A growing pair at one end of an interval is expected among the growing pairs near the imaginary axis at
+    the opposite end if its growth rate there, by its tangent, is positive and at most this multiple of its
+    frequency."""
     max_relative_frequency_change: float = 0.3
     """Largest relative difference between the frequency of a pair and its frequency by the tangent of the
     other end; with a larger difference it is another pair."""

@@ -1,4 +1,5 @@
-"""Thresholds of the part of a row that can be searched, for rows that begin at a strong pull.
+"""Thresholds of the part of a row that can be searched. A row consists of rods that differ in one parameter
+only; some rows along F begin at a strong pull.
 
 Under a strong pull no a-priori bound may apply, or no mesh may resolve the leading eigenvalues. The search of
 a row along F then begins at a smaller pull.
@@ -25,7 +26,8 @@ class SolvablePartSearch(NamedTuple):
 def thresholds_of_solvable_part(
     rod: Rod, name: str, inner_values: Array, row_ends: tuple[float, float], certify: bool
 ) -> ThresholdSearchResult:
-    """Thresholds along a row between the values `row_ends` of the parameter `name`.
+    """Thresholds of the rods that differ from `rod` only in the parameter `name` (a row), between its values
+    `row_ends`.
 
     If a row along F cannot be searched from its first pull on, the search begins at the first value of the
     row from which a search is possible, or at F = 0. inner_values: increasing values of the row between its

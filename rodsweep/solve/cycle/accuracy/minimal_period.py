@@ -48,7 +48,8 @@ def common_harmonic_divisor(motion: CycleMotion, min_ratio: float) -> int:
 
 @compiled
 def _divisor_from_harmonic_sizes(sizes: Array, min_ratio: float) -> int:
-    """Compiled `common_harmonic_divisor`. sizes: sizes of the harmonics 1, 2, ..., (harmonics,)."""
+    """Greatest common divisor of the numbers k of all harmonics whose size exceeds `min_ratio` times the
+    largest size; 0 if all sizes are 0. sizes: sizes of the harmonics 1, 2, ..., (harmonics,)."""
     divisor = 0
     min_size = min_ratio * sizes.max()
     for k in range(len(sizes)):

@@ -84,10 +84,11 @@ def eliminate_newton_matrix(
 
 @compiled_with_reordered_sums
 def _eliminate_interval(B: Array, right_matrices: Array, parts: Array, p: OrbitEquations) -> None:
-    """Eliminates the blocks B of one interval, (blocks, n, n), whose diagonal blocks are given. p: equations.
+    """Eliminates the blocks B of one interval, (blocks, n, n), whose diagonal blocks are given, stage by
+    stage. p: equations of the orbit.
 
-    right_matrices: output, (s, n, n): for each stage from the third, the matrix that gives the right-hand
-    side of the stage when it multiplies M x_0, x_0: state at the start. parts: work array, (5, n, n).
+    right_matrices: output, (s, n, n). For each stage from the third on: the matrix whose product with M x_0,
+    x_0 the state at the start, is the right-hand side of this stage. parts: work array, (5, n, n).
     """
     s = len(right_matrices)
     n = B.shape[2]

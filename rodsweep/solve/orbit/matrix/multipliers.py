@@ -23,8 +23,8 @@ class FloquetMultiplierSettings:
     """Settings for the factorisation of the derivative of a flow."""
 
     negligible_column_ratio: float = 1e-17
-    """A remaining column is neglected if its norm is at most this number times the largest column norm of the
-    derivative."""
+    """The factorisation of the derivative of a flow ends, and neglects the columns that are left, if their
+    norms are at most this number times the largest column norm of the derivative."""
 
 
 FLOQUET_MULTIPLIER_SETTINGS = FloquetMultiplierSettings()

@@ -64,12 +64,12 @@ def follow_interval(
     previous: ArmInterval | None = None,
     counts_follow: bool = False,
 ) -> ArmInterval | None:
-    """The first points of p, (n,), that are reached with one family of arms; None if the first point fails,
-    if no family is found, or if n is below `ARM_FOLLOWING_SETTINGS.min_family_points`.
+    """The leading eigenvalues at the first points of p, (n,), that are reached with one `ArmFamily`; None if
+    the first point fails, if no family is found, or if n is below `min_family_points`.
 
-    If not all growing modes can be proved complete, more eigenvalues are followed; also if too few points are
-    proved complete, unless counts at these points follow (`counts_follow`). previous: the previous interval
-    of the path, whose family is used again if it contains enough of the points p.
+    More eigenvalues are followed if the followed ones do not suffice to prove all growing modes complete, or,
+    without `counts_follow`, too few points are proved complete. counts_follow: whether the caller counts
+    eigenvalues at points without a proof. previous: its family is used again if it contains enough of p.
     """
     best: ArmInterval | None = None
     if len(p) < ARM_FOLLOWING_SETTINGS.min_family_points:
@@ -206,10 +206,10 @@ def arm_family_and_hulls(
 
 
 def arm_family_for_proofs(path: ParameterPath, hulls: PathHulls, W: float, line: float) -> ArmFamily | None:
-    """The family of all arms of `hulls`, valid for |w| <= W; if a proof without a count, at the arm with the
-    largest hull, needs a larger |w|, of at most `family_W_over_max_abs_eigenvalue` * W, the family is valid
-    up to this |w|. None if the arms are not smooth in p. line: Re w of the line of the proofs. Raises
-    ValueError at a p without a valid arm, and FloatingPointError if no elements resolve an arm."""
+    """The family of all arms of the path that `hulls` covers, valid for |w| <= W, or up to a larger |w|, at
+    most `family_W_over_max_abs_eigenvalue` * W, that the proofs of `completeness` need. None if the arms are
+    not smooth in p. line: real part right of which the proofs find no unknown eigenvalue. Raises ValueError
+    without a valid arm at a p, FloatingPointError if no elements resolve an arm."""
     largest_hull = max(zip(list_of(hulls.a), list_of(hulls.c), strict=True))
     proof_w = [
         points[-1]

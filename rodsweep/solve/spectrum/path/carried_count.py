@@ -22,8 +22,9 @@ from .eigenvalue_prediction import FollowedEigenvalues
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CarriedCountSettings(KernelConstants):
-    """Settings for a count of eigenvalues that is carried from rod to rod along a path: number of rectangles
-    of a proof, and gaps in which the line of a count may lie."""
+    """Settings for a number of eigenvalues right of a vertical line that is carried from rod to rod along a
+    path: the number of rectangles of one proof, and the gaps between real parts of eigenvalues in which the
+    line may lie."""
 
     rectangle_allowance_per_proof: int = 60
     """The number of rectangles (`moving_line`) of one proof is at most this number plus
@@ -93,8 +94,9 @@ def _does_gap_stay_open(
 def _count_right_of_widest_open_gap(
     track: FollowedEigenvalues, ends: tuple[int, int], modes: int, proved_count: int, p: Array
 ) -> int:
-    """Number of eigenvalues to the right of the widest gap that stays open between the points `ends`; 0 if no
-    gap stays open. The number is at least `modes` and at most `proved_count`."""
+    """Number of eigenvalues to the right of the widest gap between real parts that stays open between the
+    points `ends`, that is, that no followed eigenvalue enters; 0 if no gap stays open. The number is at least
+    `modes` and at most `proved_count`."""
     best_gap = 0
     max_width = CARRIED_COUNT_SETTINGS.min_relative_half_gap
     for gap in range(modes, min(proved_count, track.w.shape[1] - 1) + 1):
@@ -112,9 +114,10 @@ def _count_right_of_widest_open_gap(
 def _interval_end_with_line_in_gap(
     track: FollowedEigenvalues, i: int, gap: int, p: Array, coefficients: Array
 ) -> RodAndLineAtEnd:
-    """End, at point i of a path, of an interval over which a vertical line moves; at point i the line lies in
-    the middle of a gap. gap: number of eigenvalues to the right of the gap. p: path variables, (points,).
-    coefficients: (F, nu, c2, gamma3) at each point, (points, 4)."""
+    """Rod and line at the end, at point i of a path, of an interval over which a vertical line moves. At
+    point i the line lies in the middle of a gap between real parts of eigenvalues. gap: number of eigenvalues
+    to the right of the gap. p: path variables, (points,). coefficients: (F, nu, c2, gamma3) at each point,
+    (points, 4)."""
     F, nu, c2, gamma3 = coefficients[i]
     return RodAndLineAtEnd(
         p[i], Coefficients(F, nu, c2, gamma3), line_and_relative_half_gap(track, i, gap)[0]

@@ -1,8 +1,8 @@
-"""Spectra of rods at neighbouring values of one parameter: followed eigenvalues, and one count for many rods.
+"""Spectra of neighbouring rods along one parameter: eigenvalues, and a count, are followed from rod to rod.
 
 Krylov-Schur solves the first rod for a few modes more than requested, and solves again at a rod where
-following stops or a count disagrees. Rods without a proof or with lost digits are left to be solved one by
-one. The outcome depends only on the given rods.
+following stops, or where a count of eigenvalues differs from the number found. Rods without a proof or with
+lost digits are left to be solved one by one. The outcome depends only on the given rods.
 """
 
 import time
@@ -42,8 +42,8 @@ class NeighbouringRodsSettings:
     """Settings for eigenvalues followed along neighbouring rods of a sweep."""
 
     further_mode_count: int = 2
-    """Number of modes followed in addition to the requested modes. The line of a count lies in a gap between
-    these additional modes."""
+    """Number of modes followed in addition to the requested modes. The vertical line right of which
+    eigenvalues are counted lies in a gap between the real parts of these additional modes."""
 
 
 NEIGHBOURING_RODS_SETTINGS = NeighbouringRodsSettings()
