@@ -22,13 +22,13 @@ class DispersionCoefficientDerivatives(NamedTuple):
     T_p: float
     """dT/dp, T = c2 + gamma3."""
     N_p: float
-    """dN/dp, N = F g."""
+    """dN/dp, N = F g, g = nu + F c2."""
     N_pp: float
-    """d^2N/dp^2, N = F g."""
+    """d^2N/dp^2, N = F g, g = nu + F c2."""
     G_p: float
-    """dG/dp, G = g nu."""
+    """dG/dp, G = g nu, g = nu + F c2."""
     G_pp: float
-    """d^2G/dp^2, G = g nu."""
+    """d^2G/dp^2, G = g nu, g = nu + F c2."""
     X_p: float
     """dX/dp, X = c2 gamma3."""
     X_pp: float

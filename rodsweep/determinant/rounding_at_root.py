@@ -101,7 +101,9 @@ def rounding_error_at_root(w: complex, coefficients: Coefficients, log_scale: fl
 def _error_and_log_scale_by_roots(terms: _DispersionTerms) -> tuple[float, float]:
     """Returns (rounding error of (T s + 4 N d) exp(-S), S) as computed by `even_functions_by_roots`.
 
-    With a = (2 T M - 4 N)/R and b = (2 N M - 4 T P^2)/R the sum T s + 4 N d is a C + b H."""
+    With R = M^2 - 4 P^2, C = cosh q1 cosh q2 - 1, H = sinh(q1) sinh(q2)/(q1 q2), a = (2 T M - 4 N)/R and b =
+    (2 N M - 4 T P^2)/R the sum T s + 4 N d is a C + b H.
+    """
     T, N, M, square, error_of_M, error_of_P_squared, _ = terms
     R = M * M - 4 * square
     difference = cmath.sqrt(R)
@@ -143,8 +145,9 @@ def _error_and_log_scale_by_roots(terms: _DispersionTerms) -> tuple[float, float
 
 @compiled
 def _error_of_products(terms: _DispersionTerms, C: complex, H: complex) -> float:
-    """Rounding error of (T s + 4 N d) R = 2 T (M C - 2 P^2 H) + 2 N (M H - 2 C) by the errors of T and N and
-    of the four products, which are rounded before they cancel. C, H: see `_error_and_log_scale_by_roots`."""
+    """Rounding error, with R = M^2 - 4 P^2, of (T s + 4 N d) R = 2 T (M C - 2 P^2 H) + 2 N (M H - 2 C) by the
+    errors of T and N and of the four products, which are rounded before they cancel. C, H: see
+    `_error_and_log_scale_by_roots`."""
     T, N, M, square, _, _, error_of_P_squared_w = terms
     size_M = modulus(M)
     size_C = modulus(C)

@@ -26,11 +26,11 @@ the coefficients vary."""
 MAX_CACHED_ARMS = 16
 """Maximum number of arms, and of materials, in the caches of this module."""
 MIN_SQUARED_WAVE_NUMBER_RATIO = 1e-4
-"""Ratio K/(F g) of the smallest sample of K = kappa^2. Every wave with K > F g decays."""
+"""Ratio K/(F g) of the smallest sample of K = kappa^2, g = nu + F c2. Every wave with K > F g decays."""
 SQUARED_WAVE_NUMBER_RATIOS: Array = MIN_SQUARED_WAVE_NUMBER_RATIO ** (
     1 - np.arange(WAVE_NUMBER_SAMPLE_COUNT) / WAVE_NUMBER_SAMPLE_COUNT
 )
-"""Ratios K/(F g) of all samples of K = kappa^2, increasing, (WAVE_NUMBER_SAMPLE_COUNT,)."""
+"""Ratios K/(F g) of all samples of K = kappa^2, g = nu + F c2, increasing, (WAVE_NUMBER_SAMPLE_COUNT,)."""
 
 
 def largest_growth_and_wave_number(rod: Rod) -> tuple[float, float]:
@@ -109,8 +109,9 @@ def local_wave_numbers(w: Any, F: float, coefficients: LocalCoefficients) -> Arr
 
 
 def fastest_growing_wave_numbers_at_ends(rod: Rod) -> Array:
-    """Bounds of |q|, in 1/L, at the two ends of an arm, (2,): `local_wave_numbers` at the largest growth rate
-    of the local waves at each end; 0 at an end at which all local waves decay."""
+    """Bounds of the wave numbers |q|, in 1/L, of the solutions exp(+-q u) at the two ends of an arm, (2,):
+    `local_wave_numbers` at the largest growth rate of the local waves at each end; 0 at an end at which all
+    local waves decay."""
     coefficients = local_coefficients_at_ends(rod)
     growth, _ = _growths_and_wave_numbers(rod.F, coefficients)
     return np.where(growth > 0, local_wave_numbers(growth, rod.F, coefficients), 0.0)

@@ -1,7 +1,8 @@
 """An a-priori box that contains every transverse eigenvalue of a uniform rod with Re w >= -depth.
 
 The inner product of the eigenproblem of Sec. VI with the eigenfunction, weighted by 1 for y and rho > 0 for
-theta, gives, with N^2 = |y|^2 + rho gamma3 |theta|^2 (L2 norms over the rod),
+theta, gives, with the shear stress s, g = nu + F c2 and N^2 = |y|^2 + rho gamma3 |theta|^2 (L2 norms over the
+rod),
 
     w N^2 = -c2 |s|^2 - rho |theta'|^2 + (rho g - nu) <theta, s> - F <y, theta'>.
 

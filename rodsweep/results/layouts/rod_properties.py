@@ -27,8 +27,8 @@ def has_estimated_counts(config: Mapping[str, Any]) -> bool:
 
 
 def has_uniform_linear_rods(config: Mapping[str, Any]) -> bool:
-    """Whether all rods are uniform and of linear material. Only then can a covering prove that the list of
-    crossings is complete."""
+    """Whether all rods are uniform and of linear material. Only then can a cover of the (eigenvalue,
+    parameter) region by boxes prove that the list of crossings is complete."""
     return has_linear_law(config) and not has_estimated_counts(config)
 
 

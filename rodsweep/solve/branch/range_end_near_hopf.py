@@ -1,8 +1,8 @@
 """The end of a branch at an end of the range next to a Hopf point, by the normal form of this Hopf point, or
 next to a symmetry breaking.
 
-The cycles there are so small that a mesh may not hold them: it displaces the Hopf point by more than the
-distance between this point and the end of the range.
+The cycles there are so small that they may not exist on a mesh: the mesh displaces the Hopf point by more
+than the distance between this point and the end of the range.
 """
 
 from dataclasses import replace

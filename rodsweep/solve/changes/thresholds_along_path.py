@@ -165,7 +165,7 @@ def _search_result(
 ) -> ThresholdSearchResult:
     """The result of a search that found `thresholds` in the searched part of the requested `interval`, with
     the reason if the search ended early. crossings: crossings of the imaginary axis, with the end of the
-    search. counter: gaps and doubts of the search. end_counts: numbers of unstable modes at both ends."""
+    search. counter: undecided gaps, and doubts. end_counts: numbers of unstable modes at both ends."""
     starts, ends = zip(*counter.gaps, strict=True) if counter.gaps else ((math.nan,), (math.nan,))
     is_known = all(number >= 0 for number in (*end_counts, *(c.unstable_after for c in thresholds)))
     reason = crossings.search_end.reason

@@ -30,7 +30,8 @@ ROD_ARRAY_FIELDS = (
     "crushed",
 )
 """Fields of `CONTEXT_DTYPE` with the addresses of the integrated rod's arrays. `roots`: square roots of the
-compliances. `crushed`: value of z1 with h1 = 0 at each node but the tip, (nodes,)."""
+compliances. `crushed`: value, at each node but the tip, of the integrated variable z1 at which the axial
+stretch h1 is 0, (nodes,)."""
 WORKSPACE_ARRAY_FIELDS = ("jacobian", "base", "times", "states", "points", "constant", "rates")
 """Fields of `CONTEXT_DTYPE` with the addresses of a `CallbackWorkspace`'s arrays: the last Jacobian,
 (unknowns, unknowns); the state at which a step's matrix is evaluated, (unknowns,); times, (2

@@ -127,8 +127,9 @@ def fitted_grading(tails: Array, edges: Array, stage_count: int, harmonic: int) 
 
 
 def fourier_coefficients_in_time(c: Complex, grading: TimeGrading, part_count: int) -> Complex:
-    """Fourier coefficients in time, (l, ...), of the function Re sum_k c_k exp(2 pi i k tau) of the mesh time
-    tau in periods. c: (k, ...). part_count: number of solved parts in a period."""
+    """Fourier coefficients in time, from the mean upwards, (harmonics + 1, ...), of the function Re sum_k c_k
+    exp(2 pi i k tau) of the mesh time tau in periods. c: (k, ...); returned unchanged for a uniform grading.
+    part_count: number of solved parts in a period."""
     if grading.is_uniform:
         return c
     return fourier_coefficients(samples_in_time(c, grading, part_count))

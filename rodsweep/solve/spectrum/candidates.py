@@ -32,7 +32,8 @@ class CandidateSettings(KernelConstants):
     """Like `min_wide_gap_over_real_part`, for an unstable rod; less than `min_wide_gap_over_real_part`,
     because eigenvalues far to the left converge last and need a finer mesh."""
     relative_line_distance_from_last_w: float = 0.05
-    """Distance from the last eigenvalue w found to the last line, to the left of w, divided by |w|."""
+    """Distance from the last eigenvalue w found to the last vertical line tried for a count, to the left of
+    w, divided by |w|."""
     relative_line_distance_from_leading_w: float = 0.5
     """Distance from a followed leading eigenvalue w to the first line for a count, to the left of w, divided
     by |w|. A count at a distant line needs fewer nodes than at a near line. A line at
@@ -46,7 +47,7 @@ class CandidateSettings(KernelConstants):
     roots for one root is safe, because the count then disagrees; one root taken for two could agree with a
     wrong count."""
     max_count_lines: int = 3
-    """Maximum number of lines tried for the count of one rod."""
+    """Maximum number of vertical lines tried for the count of the eigenvalues of one rod."""
     proof_line_distance_in_errors: float = 3.0
     """Distance, to the left of the last wanted eigenvalue w, of the line of a proof from D'/D at real points
     (`completeness`): this multiple of the error of w, plus `relative_proof_line_distance` * |w|."""

@@ -69,8 +69,8 @@ def phase_node(
     arm: tuple[ExponentSamples, PropagatorsUpToW],
 ) -> PhaseNode:
     """The node at w, inside or outside the hull. known_w: eigenvalues to divide out of D, (n,). trial_radii:
-    (length over which D changes, largest radius of a circle). arm: samples of the arm, and the propagators
-    for |v| <= W on the largest circle about w."""
+    (distance over which an exponent of D changes by 1, largest radius of a circle). arm: samples of the arm,
+    and the propagators for |v| <= W on the largest circle about w."""
     value = determinant_from_propagators(w, arm[1][0], arm[1][1])
     if not abs(value.D) > CONTOUR_SETTINGS.rounding_safety_factor * value.rounding_error:
         # The sign of D is rounding here. A valid radius of 0 makes the traversal give up at this node.
@@ -104,9 +104,10 @@ def _node_inside_spectrum_hull(
     trial: tuple[float, float],
     arm: tuple[ExponentSamples, PropagatorsUpToW],
 ) -> PhaseNode:
-    """The node at w inside the hull, with the circle whose bound of |f| gives the largest valid radius.
-    value: D at the node. known_w: known eigenvalues, divided out of D. trial: (length over which D changes,
-    largest radius of a circle). arm: (samples of the arm's coefficients, propagators for |w| <= W)."""
+    """The node at w inside the hull of the spectrum, with the circle that gives the largest valid radius.
+    value: D at the node. known_w: known eigenvalues, divided out of D. trial: (distance over which an
+    exponent of D changes by about 1, largest radius of a circle). arm: (samples of the arm's coefficients,
+    propagators for |w| <= W)."""
     w = node.w
     samples, (W, propagators) = arm
     slope = max(abs(node.log_derivative), EXPONENT_SETTINGS.min_divisor)

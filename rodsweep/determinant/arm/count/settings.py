@@ -29,11 +29,11 @@ class ContourSettings(KernelConstants):
     """|rounding error of D| <= this number times `DeterminantValue.rounding_error`. Where |D| is below this
     bound, the valid radius of a node is 0."""
     max_log_D_change_over_radius: float = 1.0
-    """Radii of circles are in units of max_log_D_change_over_radius/|L| if this is below the length over
-    which D changes, so that circles get smaller close to a zero of D."""
+    """The unit of the radii of circles is max_log_D_change_over_radius |D/D'| instead of the distance over
+    which an exponent of D changes by about 1, if smaller: circles get smaller close to a zero of D."""
     max_divided_out_error_over_distance: float = 1e-3
     """A known eigenvalue is divided out of D only if its error is below this fraction of its distance from
-    the line."""
+    the vertical line of the count."""
     max_divided_out_line_distance_over_w: float = 1.0
     """Distance of a known eigenvalue w from the line, divided by max(|Im w|, |line|), below which the
     eigenvalue is divided out of D. D without farther eigenvalues would not follow the dominant wave."""
@@ -53,10 +53,11 @@ class ContourSettings(KernelConstants):
     min_valid_over_circle_radius: float = 0.2
     """If the valid radius is below this fraction of a circle's radius, a smaller circle is tried at once."""
     first_circle_radius_over_w_scale: float = 12.0
-    """Radius of the first circle at a first node, in units of the length over which D changes."""
+    """Radius of the first circle at a first node, divided by the distance in w over which an exponent of D
+    changes by about 1."""
     min_circle_radius_over_w_scale: float = 0.75
-    """Radius of the smallest circle at any node, in units of the length over which D changes. Every trial
-    halves the radius."""
+    """Radius of the smallest circle at any node, divided by the distance in w over which an exponent of D
+    changes by about 1. Every trial halves the radius."""
     max_circle_radius_over_w_scale: float = 48.0
     """Radius of the largest circle at any node, divided by the distance in w over which an exponent of D
     changes by about 1 (`mean_wave_number_and_w_scale`)."""
@@ -114,14 +115,15 @@ class NoCrossingSettings(KernelConstants):
     covered_length_over_radius: float = 0.98
     """Length of the line that a disc covers on each side of its node, divided by the radius."""
     min_radius_fraction_inside_W: float = 0.25
-    """If the largest |w| of the propagators allows only a disc below this fraction of the radius, propagators
-    for larger |w| are made."""
+    """If the bound W of the propagators allows a disc of less than this fraction of the radius to be tried,
+    propagators for a larger |w| are made."""
     W_over_largest_w: float = 2.0
     """Propagators are made valid up to W, this number times the largest |w| on the line inside the hull."""
     radius_growth_factor: float = 2.0
     """Radius of the first disc tried at a node, divided by the radius of the previous disc."""
     radius_divisor_after_failure: float = 1.5
-    """After a disc on whose circle f changes too much, the radius is divided by this number."""
+    """If D, without its zeros and its dominant exponential, changes too much on the circle of a disc, the
+    radius is divided by this number."""
     min_radius_over_w_scale: float = 0.05
     """Radius below which no disc is tried, divided by the distance in w over which an exponent of D changes
     by about 1 (`mean_wave_number_and_w_scale`) near the real axis."""
@@ -136,7 +138,8 @@ class NoCrossingSettings(KernelConstants):
 
     @property
     def max_D_change_ratio(self) -> float:
-        """Largest change of f, relative to |f(w0, q)|, at the points and arms where f is evaluated."""
+        """Largest allowed change of f (see the module `no_crossing`) over the points of a circle and the
+        evaluated arms, divided by |f| at the node for the middle arm."""
         return CONTOUR_SETTINGS.max_D_change_ratio / (
             CONTOUR_SETTINGS.circle_safety_factor * self.between_arms_safety_factor
         )

@@ -18,9 +18,10 @@ def element_edges(W: float, squares: Array, tapers: Array, points: Array, breaks
     integrals of `_elements_per_length`.
 
     squares: products of coefficients c2 gamma2 + c3 gamma3, F c3 g, g nu gamma2 c3 and c2 c3 gamma2 gamma3 of
-    n arms, (4, n, points). tapers: tapers of the arms, (n,). points: midpoints of equal parts of the
-    intervals between breaks, (points,). breaks: breaks of the profile, (pieces + 1,). If an interval needs
-    more than `max_elements` elements, or W is not finite, max_elements + 1 boundaries are returned, all 0.
+    n arms, (4, n, points), with g = nu + F c2 and c3 = 1/k3. tapers: tapers of the arms, (n,). points:
+    midpoints of equal parts of the intervals between breaks, (points,). breaks: breaks of the profile,
+    (pieces + 1,). If an interval needs more than `max_elements` elements, or W is not finite, max_elements +
+    1 boundaries are returned, all 0.
     """
     density = _elements_per_length(W, squares, tapers, points)
     intervals = len(breaks) - 1

@@ -54,14 +54,16 @@ class CycleFamily:
         cls, kind: SpecialPointKind, row_axis: PlaneAxis, point: SolvedCurvePoint, workspace: NewtonWorkspace
     ) -> "CycleFamily":
         """The family of the cycles near `point` of a curve of special points of the kind `kind`. row_axis:
-        axis of the row parameter. workspace: memory of Newton's matrices."""
+        axis of the second parameter, whose value is fixed along a branch. workspace: memory of Newton's
+        matrices."""
         has_small_cycles = (
             kind == SpecialPointKind.fold and point.tip_y_max < CURVE_SECANT_SETTINGS.max_tip_y_of_small_cycle
         )
         return cls(kind, row_axis, point.scale, point.branch_direction, has_small_cycles, workspace)
 
     def unsolved_orbit_at_row(self, orbit: Orbit, row_coordinate: float) -> Orbit:
-        """The orbit with unchanged values, for the rod at `row_coordinate`; raises Unsolvable."""
+        """The orbit with unchanged values, for the rod whose second parameter has the position
+        `row_coordinate`, from 0 to 1, on its axis; raises Unsolvable."""
         return orbit_with_parameters(
             orbit, {self.row_parameter_axis.parameter_name: self.row_parameter_axis.value(row_coordinate)}
         )
@@ -83,9 +85,9 @@ class CycleFamily:
         """The point of the curve near the orbit `start`, found by the secant method across the curve; raises
         Unsolvable.
 
-        row_coordinate: row coordinate of `start`, from 0 to 1. line: line of the search. derivatives:
-        derivatives from an earlier search, used if their direction is close to that of `line`.
-        is_other_mesh: whether `derivatives` were computed at the same point on another mesh.
+        row_coordinate: position of the second parameter of `start` on its axis, from 0 to 1. line: line of
+        the search. derivatives: derivatives from an earlier search, used if their direction is close to that
+        of `line`. is_other_mesh: whether `derivatives` were computed at the same point on another mesh.
         """
         # Derivatives along another direction across the curve would mislead the secant method.
         is_usable = (
@@ -113,8 +115,8 @@ class CycleFamily:
         Unsolvable.
 
         previous: previous point of the curve, whose measured error is used if it still applies.
-        row_coordinate: row coordinate of `start`, from 0 to 1. line: line of the search. derivatives:
-        derivatives from an earlier search.
+        row_coordinate: position of the second parameter of `start` on its axis, from 0 to 1. line: line of
+        the search. derivatives: derivatives from an earlier search.
         """
         coarser_point = self.corrected_point(start, row_coordinate, line, derivatives)
         if previous and previous.measured_error and previous.measured_error.applies_at(coarser_point):

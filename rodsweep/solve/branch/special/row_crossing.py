@@ -25,7 +25,7 @@ class RowCrossing:
         cls, row_index: int, kind: SpecialPointKind, point: SolvedCurvePoint, error: float
     ) -> "RowCrossing":
         """The crossing with the row of index `row_index` at the point `point` of a curve of special points of
-        the kind `kind`. error: absolute error of the parameter along a row at the neighbouring points of the
+        the kind `kind`. error: absolute error of the branch parameter at the neighbouring points of the
         curve."""
         special_point = SpecialPoint(
             kind=kind,

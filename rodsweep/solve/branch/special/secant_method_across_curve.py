@@ -43,10 +43,10 @@ class _SecantIterate(NamedTuple):
 class SecantSearch:
     """State of the secant method across a curve; all cycles are corrected with the matrix factors of one
     cycle. family, start, row_coordinate: the family of cycles, the orbit at which the search starts, and its
-    row coordinate from 0 to 1. line: line of the search. derivatives: derivatives from an earlier search, or
-    None. is_other_mesh: whether these derivatives were computed at the same point on another mesh. orbit:
-    current cycle. distance: distance of this cycle from the start of the search along `line`.
-    start_arc_length: arc length of this start along the branch."""
+    row coordinate: position, from 0 to 1, of the second parameter on its axis. line: line of the search.
+    derivatives: derivatives from an earlier search, or None. is_other_mesh: whether these derivatives were
+    computed at the same point on another mesh. orbit: current cycle. distance: distance of this cycle from
+    the start of the search along `line`. start_arc_length: arc length of this start along the branch."""
 
     def __init__(
         self,

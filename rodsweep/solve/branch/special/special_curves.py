@@ -22,11 +22,11 @@ class CurveIdentitySettings:
     identical."""
 
     max_distance_from_curve_per_row_length: float = 1e-6
-    """A special point lies on a curve if its distance from the curve, along its row of the parameter plane,
-    is at most this fraction of the length of a row."""
+    """A special point lies on a curve if its distance from the curve, along its row of the plane, is at most
+    this fraction of the length of a row."""
     max_chord_distance_per_row_length: float = 0.1
-    """A special point can lie on the arc between two points of a curve only if its distance, along the row,
-    from the interval of these two points is at most this fraction of the length of a row."""
+    """A special point can lie on the arc between two points of a curve only if its distance from their
+    interval, along its row of the plane, is at most this fraction of the length of a row."""
     period_interval_extension: float = 0.1
     """A special point can lie on the arc between two points of a curve only if its period is within the
     interval of the two points' periods, extended by this fraction."""
@@ -37,8 +37,8 @@ class CurveIdentitySettings:
     length 1."""
     max_last_chord_distance_per_row_length: float = 1e-3
     """Between the last cycle of a curve and the Hopf point where the cycles vanish, a special point lies on
-    the curve if its distance from the chord, along its row of the parameter plane, is at most this fraction
-    of the length of a row."""
+    the curve if its distance from the chord, along its row of the plane, is at most this fraction of the
+    length of a row."""
     max_extrapolation_points: int = 4
     """Maximum number of points of the interpolating polynomial that predicts the next point, or the Hopf
     point where the cycles vanish."""
@@ -126,8 +126,8 @@ class CurvePoint:
 
 @dataclass(frozen=True, slots=True)
 class HalfCurve:
-    """One half of a curve of special points: points in order from a special point of a row to an end of the
-    curve."""
+    """One half of a curve of special points: points in order from a special point of a branch to an end of
+    the curve."""
 
     points: tuple[CurvePoint, ...]
     end_reason: CurveEndReason

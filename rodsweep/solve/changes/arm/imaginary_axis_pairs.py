@@ -23,8 +23,8 @@ class ImaginaryAxisModeSettings:
     the opposite end if its growth rate there, by its tangent, is positive and at most this multiple of its
     frequency."""
     max_relative_frequency_change: float = 0.3
-    """Largest relative difference between the frequency of a pair and its frequency by the tangent of the
-    other end; with a larger difference it is another pair."""
+    """A growing pair at one end of an interval and a pair at the opposite end are the same if their
+    frequencies, the first extrapolated along its tangent, differ by at most this fraction."""
 
 
 IMAGINARY_AXIS_MODE_SETTINGS = ImaginaryAxisModeSettings()

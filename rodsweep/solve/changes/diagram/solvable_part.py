@@ -16,8 +16,9 @@ from ..thresholds_along_path import ThresholdSearchResult, find_thresholds
 
 
 class SolvablePartSearch(NamedTuple):
-    """Search of a row that starts at one of its values. result: None if nothing could be searched. failure:
-    why nothing could be searched, or why a search along F ended early at a pull, F < 0; empty otherwise."""
+    """Search of a row (rods that differ in one parameter only) that starts at one of its parameter values.
+    result: None if nothing could be searched. failure: why nothing could be searched, or why a search along F
+    ended early at a pull, F < 0; empty otherwise."""
 
     result: ThresholdSearchResult | None
     failure: str = ""
@@ -76,8 +77,8 @@ def thresholds_of_solvable_part(
 def _search_along_row(
     rod: Rod, name: str, row_ends: tuple[float, float], certify: bool
 ) -> SolvablePartSearch:
-    """Search along a row, the parameter `name` of `rod` between `row_ends`; a search along F that ends early
-    at a pull, F < 0, is a failure."""
+    """Search along the rods that differ from `rod` only in the parameter `name`, between its values
+    `row_ends`; a search along F that ends early at a pull, F < 0, is a failure."""
     try:
         result = find_thresholds(
             ParameterPath(rod.with_values(**{name: row_ends[0]}), name), *row_ends, certify

@@ -36,8 +36,8 @@ class CarriedCountSettings(KernelConstants):
     is taken. Relative half-width: half-width divided by the distance of the gap's middle from the imaginary
     axis."""
     min_relative_half_gap: float = 1e-6
-    """No line is drawn in a gap whose relative half-width (see `min_wide_relative_half_gap`) is less than
-    this."""
+    """No vertical line is placed in a gap between real parts of eigenvalues whose relative half-width (see
+    `min_wide_relative_half_gap`) is less than this."""
 
 
 CARRIED_COUNT_SETTINGS = CarriedCountSettings()
