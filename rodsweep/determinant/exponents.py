@@ -27,8 +27,8 @@ class ExponentSettings(KernelConstants):
     cosh_series_below: float = 0.1
     """E(z) and dE/dz are computed by series for |z| below this number: the closed form of dE/dz cancels."""
     sinh_series_below: float = 0.25
-    """sinh(q)/q and its slope are computed by series for |q^2| below this number, because the closed form of
-    the slope would cancel."""
+    """sinh(q)/q and (1/q) d(sinh(q)/q)/dq are computed by series for |q^2| below this number, because the
+    closed form of the derivative would cancel."""
     min_modulus_from_square: float = 1e-145
     """A modulus |w| below this number is computed without |w|^2, which loses digits below 1e-308 and is 0 at
     the exponentially small eigenvalues of strongly pulled rods, |w| < 1e-162."""

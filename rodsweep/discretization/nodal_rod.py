@@ -20,11 +20,13 @@ class NodalRod(NamedTuple):
 
     tip_stress: stress Sigma(1), (d,). straight_state_strain: E0, the strain of the straight rod under its
     force, (d, nodes + 1). compliance, drag: (d, nodes + 1). mobility: 1/drag, but 0 for the components of V
-    that are unknowns, (d, nodes + 1). mobility_laplacian: -D^T W mobility D, (d, nodes + 1, nodes + 1).
-    unknown_velocity_components: indices of the components of V that are unknowns. law_number: number of the
-    constitutive law, see `rodsweep.model.material.stress_strain`. jump_nodes: nodes at which the material
-    jumps, increasing, (k,). jump_side_coefficients: the material on both sides of each jump, (k, 2, 7), see
-    `rodsweep.model.material.jump`."""
+    that are unknowns, (d, nodes + 1). mobility_laplacian: -D^T W mobility D with the differentiation matrix D
+    and the quadrature weights W, (d, nodes + 1, nodes + 1). unknown_velocity_components: indices of the
+    components of V that are unknowns. law_number: number of the constitutive law, see
+    `rodsweep.model.material.stress_strain`. jump_nodes: nodes at which the material jumps, increasing, (k,).
+    jump_side_coefficients: the material on both sides of each jump, (k, 2, 7), see
+    `rodsweep.model.material.jump`.
+    """
 
     tip_stress: Array
     straight_state_strain: Array
@@ -55,7 +57,8 @@ NO_JUMP_DERIVATIVE = np.zeros((0, 2, 3))
 
 
 class NodalRodDerivative(NamedTuple):
-    """The derivatives of fields of a `NodalRod` by the coordinate of a parameter, shaped as the fields."""
+    """Derivatives of fields of a `NodalRod`, of the same shapes, with respect to the coordinate of a
+    parameter: 1/k for a stiffness k, else the value."""
 
     tip_stress: Array
     """Derivative of the stress Sigma(1) at the tip, (d,)."""
@@ -78,7 +81,7 @@ def nodal_rod(
 ) -> NodalRod:
     """The `NodalRod` of a rod on a mesh. coefficients: coefficients of the balance at the nodes.
     unknown_velocity_components: indices of the components of V that are unknowns. law: number of the
-    constitutive law. jumps: jumps of the material on this mesh."""
+    constitutive law (`stress_strain`), 0 if linear. jumps: jumps of the material on this mesh."""
     node_count = mesh.node_count + 1
     rest_strain = _broadcast_to_nodes(coefficients.straight_state_strain, node_count)
     compliance = _broadcast_to_nodes(coefficients.compliance, node_count)

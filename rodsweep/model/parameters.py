@@ -103,7 +103,8 @@ class Parameter:
 
     @property
     def neutral_value(self) -> float:
-        """The default of the parameter; without one, the value at coordinate 0, valid for every rod."""
+        """The default of the parameter; without a default, inf for a stiffness and 0 otherwise: valid for
+        every rod."""
         return self.value(0.0) if self.default is None else self.default
 
     @property

@@ -91,8 +91,8 @@ def frequency_bound_on_path(path: ParameterPath, p_start: float, p_stop: float) 
 @compiled
 def frequency_bound_between_rods(first: Coefficients, last: Coefficients) -> float:
     """An upper bound of `frequency_bound` over all rods between two rods of a path; inf if no bound is known.
-    Every factor of the bound is monotone along a path, so its extremes are at the two rods. The product nu g
-    is not monotone and not used."""
+    Every factor of the bound is monotone along a path, so its extremes are at the two rods. The product nu g,
+    g = nu + F c2, is not monotone and not used."""
     load = max(abs(first.F), abs(last.F))
     # F passes 0 between loads of opposite signs.
     least_load = 0.0 if first.F * last.F < 0 else min(abs(first.F), abs(last.F))
@@ -143,7 +143,7 @@ def zero_free_radius_of_rod(coefficients: Coefficients, max_radius: float) -> fl
 
 def _zero_free_radius(radius: float, T: float, X: float, G: float, max_pull: float) -> float:
     """The first of r, r/2, r/4, ... such that |D(i eta) - 1| < 1/2 for |eta| <= r; 0 if r underflows. T, X,
-    G: bounds of c2 + gamma3, c2 gamma3 and |g nu|. max_pull: bound of -F g, at least 0."""
+    G: bounds of c2 + gamma3, c2 gamma3 and |g nu|, g = nu + F c2. max_pull: bound of -F g, at least 0."""
     # The loop ends at the latest when the radius underflows to 0, where the bound is 0.
     while _D_distance_from_one_bound(radius, T, X, G, max_pull) >= BOX_SETTINGS.max_D_deviation_from_one:
         radius /= 2
@@ -152,7 +152,8 @@ def _zero_free_radius(radius: float, T: float, X: float, G: float, max_pull: flo
 
 def _D_distance_from_one_bound(radius: float, T: float, X: float, G: float, max_pull: float) -> float:
     """An upper bound of |D(i eta) - 1| for |eta| <= `radius`, below exp(1); exp(1) or inf: no useful bound.
-    T, X, G: bounds of c2 + gamma3, c2 gamma3 and |g nu|. max_pull: bound of -F g, at least 0."""
+    T, X, G: bounds of c2 + gamma3, c2 gamma3 and |g nu|, g = nu + F c2. max_pull: bound of -F g, at least
+    0."""
     exponent = sqrt(max_pull + T * radius + 2 * sqrt(radius * (G + X * radius)))
     if exponent > 1 + sqrt(max_pull):
         return inf

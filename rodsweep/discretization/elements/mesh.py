@@ -1,7 +1,8 @@
 """Meshes of the rod with their differentiation matrices, and the shape of a rod from its strains.
 
-Fields are continuous and polynomials of degree p on each element, with Lobatto nodes and lumped mass. The
-shape is theta(u) = int Pi, r(u) = int R(theta) (h1, h2), where R(theta) is the rotation by theta.
+Fields are continuous and polynomials of degree p on each element, with Lobatto nodes and lumped mass. With
+the bending strain Pi the shape is theta(u) = int Pi, r(u) = int R(theta) (h1, h2), where R(theta) is the
+rotation by theta.
 """
 
 from dataclasses import dataclass, field
@@ -103,8 +104,8 @@ def interpolation_matrix(source: Mesh, target: Mesh) -> Array:
 
 def shape_from_strains(mesh: Mesh, strains: Array, clamp: Array) -> Array:
     """Shape (x, y, theta), in L and rad, of a rod at all nodes, (3, ..., nodes + 1), from its strains.
-    strains: (h1, h2, Pi) at the nodes of every element, (3, ..., nodes + elements). clamp: (x, y, theta) at u
-    = 0, (3,)."""
+    strains: (h1, h2, Pi), Pi: bending strain, at the nodes of every element, (3, ..., nodes + elements).
+    clamp: (x, y, theta) at u = 0, (3,)."""
     gauss_point_count = mesh.order + SHAPE_QUADRATURE_SETTINGS.extra_point_count
     shape = np.empty((*strains.shape[:-1], mesh.node_count + 1), strains.dtype)
     start = np.broadcast_to(clamp.reshape(3, *(1,) * (strains.ndim - 1)), (3, *strains.shape[1:-1], 1))

@@ -108,7 +108,8 @@ class StressForm(RodOnMesh):
 
     @cached_property
     def mass_diagonal(self) -> Array:
-        """Diagonal of the mass matrix, (unknowns,): W C for stresses, 0 for v1 and Omega."""
+        """Diagonal of the mass matrix, (unknowns,): quadrature weights times compliances for stresses, 0 for
+        v1 and Omega."""
         return self.mass_diagonal_of(self.nodal_rod)
 
     def mass_diagonal_of(self, rod: NodalRod | NodalRodDerivative) -> Array:

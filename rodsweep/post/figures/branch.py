@@ -53,8 +53,8 @@ BRANCH_COLOURS = (
 
 def draw_branch(request: FigureRequest) -> str:
     """Draws the largest y of the tip and the period of cycles against the followed parameter, for one or
-    several rods; returns a sentence. Raises InputError for options that the task does not have, and if
-    nothing can be drawn."""
+    several rods; returns a description of the figure. Raises InputError for options that the task does not
+    have, and if nothing can be drawn."""
     view = request.require_single_view()
     rods = [RodBranches(view, number) for number in range(view.variables["status"].size)]
     rods_with_cycles = [rod for rod in rods if any(curve.is_cycle.any() for curve in rod.curves)]

@@ -31,8 +31,8 @@ SEARCHED_FORCE_DIGITS = 4
 
 def draw_thresholds(request: FigureRequest) -> str:
     """Draws the first thresholds against one parameter or over two parameters, or a bar of classes for each
-    rod; returns a sentence. Raises InputError for options that the task does not have, and if nothing can be
-    drawn."""
+    rod; returns a description of the figure. Raises InputError for options that the task does not have, and
+    if nothing can be drawn."""
     if request.views[1:]:
         return _draw_files(request)
     view = as_grid_if_possible(request.require_single_view("lines", "map"))
@@ -66,8 +66,8 @@ def draw_thresholds(request: FigureRequest) -> str:
 
 def _draw_files(request: FigureRequest) -> str:
     """Draws the thresholds of several files against the parameter that varies in all files; returns a
-    sentence. Raises InputError for too many files, for unsuitable options, and unless the files have one task
-    and vary in one common parameter only."""
+    description of the figure. Raises InputError for too many files, for unsuitable options, and unless the
+    files have one task and vary in one common parameter only."""
     request.refuse_points_and_other_kinds(request.views[0], ("lines",))
     request.require_output()
     views = request.views

@@ -28,14 +28,15 @@ from .special.branch_segment import BranchSegment
 
 
 def range_end_condition(start: BranchCycle, limit: float) -> BorderCondition:
-    """The condition that the parameter coordinate of a cycle equals the parameter coordinate `limit`, scaled
-    with the units of the cycle `start`."""
+    """The condition that the branch parameter of a cycle has the coordinate `limit` (1/k for a stiffness k,
+    otherwise the value), scaled with the units of the cycle `start`."""
     return BorderCondition(start.scale, PARAMETER_DIRECTION, limit / start.scale.coordinate_unit)
 
 
 def index_of_passed_range_end(point: BranchCycle, range_ends: tuple[float, float]) -> int:
     """Index of the end of the range beyond which the cycle `point` lies: 0 below the range, 1 above, -1
-    within the range. range_ends: smallest and largest coordinate of the range."""
+    within the range. range_ends: smallest and largest coordinate of the range; the coordinate of a parameter
+    is 1/k for a stiffness k, otherwise the value."""
     low, high = range_ends
     if point.parameter_coordinate < low:
         return 0
@@ -82,10 +83,10 @@ def _step_length_into_range(beyond: Callable[[float], float], step: float) -> fl
 
 
 def cycle_at_range_end_beside_zero(start: BranchCycle, low: float, accuracy: float) -> BranchCycle | None:
-    """The cycle at the smallest coordinate `low` of the range, for a parameter that cannot be negative, if
-    the next step could pass the coordinate 0, beyond which no rod exists. None unless the tangent at `start`
-    reaches 0 within the next step; also None if no cycle is found, as when the branch folds before `low`.
-    accuracy: relative accuracy. Raises WorkLimitReached."""
+    """The cycle at the smallest coordinate `low` of the range (1/k for a stiffness k, else the value), for a
+    parameter that cannot be negative, if the next step could pass the coordinate 0, beyond which no rod
+    exists. None unless the tangent at `start` reaches 0 within the next step; also None if no cycle is found,
+    as when the branch folds before `low`. accuracy: relative accuracy. Raises WorkLimitReached."""
     rate = float(start.tangent[-1])
     coordinate = start.parameter_coordinate
     name = start.scale.parameter_name

@@ -87,8 +87,9 @@ def has_accurate_range_end(
 
 
 def expected_errors_of_solved_cycle(start: BranchCycle, coordinate: float, hopf: HopfBranchStart) -> Array:
-    """Expected relative errors of period and largest tip y, (2,), of a cycle that is solved at the parameter
-    coordinate `coordinate`, between the cycle `start` and the Hopf point `hopf`; inf at the Hopf point."""
+    """Expected relative errors of period and largest tip y, (2,), of a cycle that is solved at the coordinate
+    `coordinate` of the branch parameter (1/k for a stiffness k, else the value), between the cycle `start`
+    and the Hopf point `hopf`; inf at the Hopf point."""
     distance = abs(coordinate - hopf.parameter_coordinate)
     growth = _distance_from_hopf(start.orbit, hopf) / distance if distance else inf
     return growth * _period_and_largest_tip_y_errors(start.cycle.errors)
@@ -185,5 +186,6 @@ def _cycles_near_hopf(start: BranchCycle, hopf: HopfBranchStart) -> list[tuple[O
 
 
 def _distance_from_hopf(orbit: Orbit, hopf: HopfBranchStart) -> float:
-    """Distance of the parameter coordinate of an orbit from that of the Hopf point `hopf`."""
+    """Distance of an orbit from the Hopf point `hopf` in the coordinate of the branch parameter: 1/k for a
+    stiffness k, else the value."""
     return abs(orbit.form.rod.coordinate(hopf.parameter_name) - hopf.parameter_coordinate)

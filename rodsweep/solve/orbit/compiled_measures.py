@@ -24,8 +24,8 @@ from ...model.material.jump import LawUnknowns, unknowns_before_jump, unknowns_b
 from .equations import OrbitEquations
 
 REFLECTION_SIGNS = np.array([1.0, -1.0, -1.0])
-"""Signs of (x, y, theta), and of (h1, h2, Pi), under the reflection: half a period later, a symmetric orbit
-has the values multiplied by these signs."""
+"""Signs of (x, y, theta), and of the strains (h1, h2, bending strain), under the reflection: half a period
+later, a symmetric orbit has the values multiplied by these signs."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,11 +43,12 @@ class TipPath(NamedTuple):
     """Path of the tip over a period, and strains, as trigonometric polynomials in the mesh time through the
     states at the time nodes.
 
-    strains_and_rates: (h1, h2, Pi) at the nodes of every element, and the derivatives of these strains with
-    respect to the mesh time in periods, for the solved states, (2, 3, K, nodes + elements). tip_coefficients:
-    Fourier coefficients of (x, y, theta) of the tip, (count, 3). tip_samples: (x, y, theta) at equidistant
-    mesh times of the period, (`TIP_EXTREMUM_SETTINGS.samples_per_time_node` (count - 1), 3).
-    least_tip_values, largest_tip_values: smallest and largest (x, y, theta), (3,)."""
+    strains_and_rates: strains (h1, h2, bending strain) at the nodes of every element, and the derivatives of
+    these strains with respect to the mesh time in periods, for the solved states, (2, 3, K, nodes +
+    elements). tip_coefficients: Fourier coefficients of (x, y, theta) of the tip, (count, 3). tip_samples:
+    (x, y, theta) at equidistant mesh times of the period, (`TIP_EXTREMUM_SETTINGS.samples_per_time_node`
+    (count - 1), 3). least_tip_values, largest_tip_values: smallest and largest (x, y, theta), (3,).
+    """
 
     strains_and_rates: Array
     tip_coefficients: Complex

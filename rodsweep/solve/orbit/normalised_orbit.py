@@ -155,7 +155,7 @@ def start_bending_moment_inner_product(values: Array, other_values: Array, r: No
 @compiled_with_reordered_sums
 def _scale_reversed_components(values: Array, factor: float, r: NormalisationArrays) -> None:
     """Multiplies by `factor`, in place, the components that change sign under the reflection, in all states
-    of `values`, (N,) or (N + 1,)."""
+    of `values`: orbit values, (N,), or normalised values, (N + 1,). r: marks these components."""
     n = len(r.reversal_mask)
     for first in range(0, len(values) - n + 1, n):
         for i in range(n):

@@ -136,8 +136,8 @@ def fourier_coefficients_in_time(c: Complex, grading: TimeGrading, part_count: i
 
 
 def samples_in_time(c: Complex, grading: TimeGrading, part_count: int) -> Array:
-    """Values, (m, ...), at equidistant times of the period, of the function in
-    `fourier_coefficients_in_time`; same arguments."""
+    """Values, (samples, ...), of the function in `fourier_coefficients_in_time`, with the same arguments, at
+    equidistant times of the period, `samples_per_time_node` of them per coefficient beyond the first."""
     cosines, sines = _mesh_time_waves_at_equal_times(len(c), grading, part_count)
     columns = c.reshape(len(c), -1)
     samples: Array = cosines @ columns.real - sines @ columns.imag

@@ -100,7 +100,8 @@ def solver_with_outcome_cache(solver: Solver, points: Points, layout: Layout) ->
     rod.
 
     In chains, an outcome is used again if the rods are equal and both points start from the same state.
-    Points of groups are always solved, because a point takes less than a millisecond.
+    Points of groups, along which eigenvalues are followed, are always solved, because a point takes less than
+    a millisecond.
     """
     rods = None if solver.groups_and_group_solver else numbers_of_distinct_rods(points)
     if rods is None:

@@ -156,7 +156,7 @@ def _highest_legendre_coefficients_matrix(stage_count: int) -> Array:
 @compiled
 def _is_coarse(coefficients: Array, last_terms: Array) -> NDArray[np.bool_]:
     """Mask of the elements, (elements,), that do not resolve an arm: one of the last two Legendre
-    coefficients of nu, c2, c3, gamma2 or gamma3 exceeds `max_coefficient_tail` times the largest value.
+    coefficients of nu, c2, c3, gamma2 or gamma3 exceeds `max_coefficient_tail` times its largest value.
 
     coefficients: coefficients of n arms, (6, n, elements, stages). last_terms: result of
     `_highest_legendre_coefficients_matrix`.

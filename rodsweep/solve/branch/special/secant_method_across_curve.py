@@ -30,9 +30,9 @@ if TYPE_CHECKING:
 
 
 class _SecantIterate(NamedTuple):
-    """A cycle solved by the secant method. orbit: its orbit. null_vectors: tangent, (N + 1,), or eigenvector,
-    (2, N + 1), of the test function. test_value: value of the test function. distance_across_curve: distance
-    from the predicted point, in the direction across the curve."""
+    """A cycle solved by the secant method. orbit: its orbit. null_vectors: null vectors of the test function:
+    tangent (fold), (N + 1,), or eigenvector (torus), (2, N + 1). test_value: value of the test function.
+    distance_across_curve: distance from the predicted point, in the direction across the curve."""
 
     orbit: Orbit
     null_vectors: Array
@@ -238,7 +238,8 @@ class SecantSearch:
         )
 
     def _parameter_error_at_distance(self, distance: float) -> float:
-        """Displacement of the parameter at a fixed row, for a point at a distance from the curve."""
+        """Displacement of the branch parameter, at a fixed second parameter, that corresponds to a `distance`
+        from the curve."""
         rates = self.derivatives
         assert rates is not None
         parameter = PARAMETERS[self.family.scale.parameter_name]

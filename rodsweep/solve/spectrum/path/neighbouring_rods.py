@@ -218,8 +218,8 @@ def _proved_counts_along(
 
 
 def _first_eigenvalues_and_proved_count(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
-    """Returns (eigenvalues, proved_count); None after a failure or without a proof. eigenvalues: start of
-    following, (m,), complex ones in pairs. proved_count: number of leading ones proved complete."""
+    """Returns (eigenvalues to follow, (m,), with complex ones in pairs; number of leading eigenvalues proved
+    complete), or None after a failure or without a proof."""
     try:
         count = request.mode_count + NEIGHBOURING_RODS_SETTINGS.further_mode_count
         extended_request = replace(request, mode_count=count - 1, certify=True)
