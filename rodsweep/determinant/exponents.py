@@ -25,7 +25,8 @@ class ExponentSettings(KernelConstants):
     max_exponent: float = 600.0
     """An exponent above this number is replaced by this number, since exp overflows at 709."""
     cosh_series_below: float = 0.1
-    """E(z) and dE/dz are computed by series for |z| below this number: the closed form of dE/dz cancels."""
+    """E(z) = (cosh sqrt(z) - 1)/z and dE/dz are computed by series for |z| below this number: the closed form
+    of dE/dz cancels."""
     sinh_series_below: float = 0.25
     """sinh(q)/q and (1/q) d(sinh(q)/q)/dq are computed by series for |q^2| below this number, because the
     closed form of the derivative would cancel."""

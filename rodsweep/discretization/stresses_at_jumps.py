@@ -25,7 +25,8 @@ from .nodal_rod import NO_JUMPS, IntegerArray, NodalRod
 
 STRETCHING_STRESS_INDEX = 0
 BENDING_STRESS_INDEX = 2
-"""Indices of the stretching stress S1 and of the bending stress S3, the components of S that jump."""
+"""STRETCHING_STRESS_INDEX, BENDING_STRESS_INDEX: indices of the stretching stress S1 and of the bending
+stress S3, the components of S that jump."""
 DISCONTINUOUS_STRESS_COMPONENTS = STRETCHING_STRESS_INDEX, BENDING_STRESS_INDEX
 """Indices of the components of S that are discontinuous at a jump."""
 SIDE_WEIGHT_COLUMNS = 3, 4

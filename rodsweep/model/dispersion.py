@@ -174,9 +174,9 @@ def _scaled_peak_growth_and_wave_number(
 def _sampled_growth_and_wave_number(
     max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any
 ) -> tuple[Array, Array]:
-    """`_scaled_peak_growth_and_wave_number` by comparison of WAVE_NUMBER_SAMPLE_COUNT wave numbers, for rods
-    with g = nu + F c2 < 0: under such a pull the growth rate, as a function of the wave number, may have its
-    maximum at 0 or none. Arguments: as there, with the shape (..., 1)."""
+    """`_scaled_peak_growth_and_wave_number` by comparison of WAVE_NUMBER_SAMPLE_COUNT wave numbers, used if g
+    = nu + F c2 <= 0 at any point: under such a pull the growth rate, as a function of the wave number, may
+    have its maximum at 0 or none. Arguments: as there, with the shape (..., 1)."""
     product = c2 * gamma3
     K = max_K * SQUARED_WAVE_NUMBER_RATIOS
     # Both branches of each `where` are evaluated, also where they divide by 0.

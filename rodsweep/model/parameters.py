@@ -72,8 +72,8 @@ class Parameter:
     """Value of the parameter if a config does not contain it; None if every grid must contain it."""
     scaled_coefficient_names: tuple[str, ...] = ()
     """Names of the stiffnesses or drags that the value multiplies; empty for a load, a stiffness or a drag. A
-    parameter may multiply either stiffnesses or drags, not both, because the covering of a path requires
-    equations that are affine in the coordinate of the parameter."""
+    parameter may multiply either stiffnesses or drags, not both, because the proof that no crossing on a path
+    is missing requires equations that are affine in the coordinate of the parameter."""
 
     def __post_init__(self) -> None:
         """Raises ValueError if the parameter scales both stiffnesses and drags."""

@@ -38,7 +38,7 @@ def uncrushed_ranges(view: ResultView, rods: Iterable[int]) -> list[ParameterRan
 
 
 def crushing_forces(view: ResultView) -> Array:
-    """Force that crushes the thinnest section of each rod of a file, in k3/L^2, (points,); inf for rubber."""
+    """Force that crushes the weakest section of each rod of a file, in k3/L^2, (points,); inf for rubber."""
     columns = view.point_columns
     tapers = columns.get("taper", np.ones_like(columns["k1"]))
     return np.asarray(columns["k1"] * material_of_rods(view).crushing_forces_over_k1(tapers))

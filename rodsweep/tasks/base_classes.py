@@ -27,8 +27,8 @@ class CertifiedTask(Task):
     uncertified_risk: ClassVar[str]
     """Consequence of a missing certificate, as `check` prints it."""
     modes_counted_per: ClassVar[str] = ""
-    """Rods at which the certificate counts modes: "point" for every point, "line" for some rods on each
-    line."""
+    """Rods at which the certificate counts modes: "point" for every point, "line" for some rods on each line
+    of points along F."""
     never_modelled_effects: ClassVar[tuple[str, str]] = (
         "gravity, inertia, nonlinear motion",
         "not part of the linear overdamped problem",

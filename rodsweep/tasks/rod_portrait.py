@@ -21,7 +21,8 @@ from .running.in_memory import solve_job_in_memory
 from .running.job import Job, job_of_config
 
 CYCLE_POSITIONS_IN_STABLE_RANGES = (0.1, 0.5, 0.9)
-"""Forces of the three cycles, as fractions of the total length of all ranges of F with a stable cycle."""
+"""Positions of the forces of the three cycles in the ranges of F with a stable cycle, counted from the
+smallest force, as fractions of the total length of these ranges."""
 SHAPE_COUNT = 12
 """Number of shapes per period of each cycle; a small panel has no room for more."""
 LARGE_INITIAL_DEFLECTION = 0.5

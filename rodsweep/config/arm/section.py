@@ -88,9 +88,9 @@ class ArmConfig(StrictConfigSection):
     force: Annotated[QuantityAxis | None, QUANTITY_FIELD] = None
     """Follower force at the tip."""
     pressure_over_flutter: Annotated[ParameterAxis | None, RELATIVE_LOAD_FIELD] = None
-    """Pressure divided by the flutter pressure at the likeliest drag: 1.2 is `pressure: 1.2 of flutter`."""
+    """Pressure over the flutter pressure at the likeliest drag: 1.2 means `pressure: 1.2 of flutter`."""
     force_over_flutter: Annotated[ParameterAxis | None, RELATIVE_LOAD_FIELD] = None
-    """Force divided by the flutter force at the likeliest drag: 1.2 is `force: 1.2 of flutter`."""
+    """Force over the flutter force at the likeliest drag: 1.2 means `force: 1.2 of flutter`."""
 
     load_kind: Annotated[Literal["pressure", "force"] | None, Field(description="pressure or force")] = None
     """Kind of the loads in the results of an arm without a load, by default pressure: thresholds are stored

@@ -73,7 +73,8 @@ class BranchConfig(Config):
     branch: BranchOptions = BranchOptions()
 
     parameters_depend_on_options: ClassVar[bool] = True
-    """True: the parameter `along` is not needed."""
+    """True: the needed parameters depend on the option `along`, because the followed parameter has no
+    axis."""
 
     @property
     def parameter_names(self) -> tuple[str, ...]:

@@ -33,7 +33,8 @@ class ArmRootSettings(KernelConstants):
     has lost half of its digits. The leading eigenvalue of a strongly pulled arm is exponentially small."""
     max_later_w_over_root_w: float = 16.0
     """If D is needed later at a larger |w|, at most this number times |w| of the roots, the roots use the
-    elements for the larger |w|: at most four times as many. Rounding errors grow with their number."""
+    elements for the larger |w|: at most four times as many. Rounding errors grow with the number of
+    elements."""
 
 
 ARM_ROOT_SETTINGS = ArmRootSettings()

@@ -32,7 +32,7 @@ class BoxSettings(KernelConstants):
     """Settings for the a-priori box of all eigenvalues, and for the disc about w = 0 without a zero of D."""
 
     padding_over_depth: float = 0.01
-    """This fraction of the depth is added to both bounds of the box."""
+    """This fraction of `depth` is added to both bounds of the box of the eigenvalues with Re w >= -depth."""
     min_padding: float = 1e-6
     """Length added to both bounds of the box, in 1/tau2; far below |w| = 12 of a rod at rest."""
     relative_bound_excess: float = 0.01

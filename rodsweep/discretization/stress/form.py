@@ -22,9 +22,10 @@ class VelocityEliminationSettings:
     """Settings for the choice of the unknowns of a `StressForm`."""
 
     min_eliminated_rotational_drag: float = 1e-5
-    """Omega is eliminated if the rotational drag is at least this; else Omega is an unknown. Division by a
-    smaller drag costs digits of Floquet multipliers (errors of 2e-9 at a drag of 1e-6, of 2e-7 at 1e-8), and
-    cycles of soft rods are not found. A form with Omega as an unknown takes 2.4 times as long."""
+    """The angular velocity Omega is eliminated if the rotational drag is at least this; else it is an
+    unknown. Division by a smaller drag costs digits of Floquet multipliers (errors of 2e-9 at a drag of 1e-6,
+    of 2e-7 at 1e-8), and cycles of soft rods are not found. A form with Omega as an unknown takes 2.4 times
+    as long."""
     min_eliminated_axial_drag: float = 2e-3
     """The axial velocity v1 is eliminated if the axial drag is everywhere at least this; otherwise v1 is an
     unknown. Newton's method for the form without v1 converges only from starts whose relative error is below
@@ -44,7 +45,8 @@ ANGULAR_VELOCITY_COMPONENTS = (2,)
 
 
 def has_small_rotational_drag(rod: Rod) -> bool:
-    """Whether the rotational drag is somewhere so small that Omega must be an unknown."""
+    """Whether the rotational drag is somewhere so small that the angular velocity Omega must be an
+    unknown."""
     return rod.least_rotational_drag < VELOCITY_ELIMINATION_SETTINGS.min_eliminated_rotational_drag
 
 
@@ -59,8 +61,8 @@ class StressForm(RodOnMesh):
     """
 
     is_omega_always_unknown: bool = False
-    """Whether Omega is an unknown for any rotational drag, so that states of rods with small and with large
-    drags can be compared."""
+    """Whether the angular velocity Omega is an unknown for any rotational drag, so that states of rods with
+    small and with large drags can be compared."""
 
     @property
     def unknown_velocity_components(self) -> tuple[int, ...]:

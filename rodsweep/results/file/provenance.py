@@ -35,7 +35,8 @@ FAILED_POINT_PARAMETER_DIGITS = 9
 """Number of digits shown of a computed parameter of a failed point. All digits are shown if a second point
 would have the same text."""
 MAX_TYPED_DIGITS = 15
-"""Largest number of digits of parameters that are shown as typed."""
+"""A parameter of a failed point is shown as the user typed it if it equals a number of at most this many
+digits."""
 MAX_FAILURE_REASONS = 20
 """Maximum number of reasons of failure in a file; additional reasons are dropped."""
 KERNEL_NOT_RECORDED = "unknown"

@@ -40,9 +40,9 @@ class DetachedBranchSettings:
     """Arc lengths of the first cycle from the known special point, tried in this order: 0.02 is the first
     step length on all branches, and a small closed branch needs a shorter step."""
     max_prediction_error_per_step_length: float = 0.5
-    """Largest difference between the first cycle and its prediction on the tangent, divided by the length of
-    this step. If the difference is larger, the branch turns by about a right angle on this step, and the
-    cycle may lie beyond another fold."""
+    """Largest difference between the first cycle and its prediction on the tangent at the special point,
+    divided by the length of the step from this point to the cycle. If the difference is larger, the branch
+    turns by about a right angle on the step, and the cycle may lie beyond another fold."""
     successive_accuracy_ratio: float = 0.01
     """Ratio of a relative accuracy to the previous one, tried if the previous accuracy gave no complete
     branch through the point: a mesh displaces a small closed branch, or a fold near an end of the range, by

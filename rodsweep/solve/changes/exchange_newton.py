@@ -10,14 +10,16 @@ from .spectrum_samples import SpectrumSample
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExchangeNewtonSettings:
-    """Settings of Newton's method for an exchange between two samples."""
+    """Settings of Newton's method for an exchange of the leading eigenvalue between two samples."""
 
     max_newton_steps_to_overtaking: int = 60
-    """Maximum number of Newton steps to an overtaking."""
+    """Maximum number of Newton steps to the point at which a real eigenvalue overtakes a pair in growth rate,
+    or a pair a real eigenvalue."""
     following_step_count: int = 8
     """Number of steps in which an eigenvalue is followed from a sample to the middle of the interval."""
     converged_step_in_errors: float = 4.0
-    """Newton's method for an overtaking stops when the step is smaller than this multiple of the error."""
+    """Newton's method for an overtaking (equal growth rates of a real eigenvalue and a pair) stops when the
+    step is smaller than this multiple of the error."""
     relative_rounding_of_path_variable: float = 4e-16
     """Relative rounding error of the path variable: two units in the last place."""
     max_relative_eigenvalue_error: float = 1e-6

@@ -56,7 +56,7 @@ class ThresholdSearchResult:
     is_proved: bool
     """Whether a proof succeeded: crossings complete, counts consistent, leading eigenvalues proved."""
     determinant_evaluation_count: int = 0
-    """Number of evaluations of the determinant D for the boxes."""
+    """Number of evaluations of D over boxes of the (eigenvalue, parameter) region; 0 for nonuniform arms."""
     eigenvalue_solve_count: int = 0
     """Number of solved eigenvalue problems."""
     doubt_text: str = ""

@@ -1,5 +1,5 @@
-"""Search for all curves through the seed points on the rows of a parameter plane; each curve is traced only
-once.
+"""Search for all curves through given points (seed points) on rows of a parameter plane, lines along which
+one parameter varies; each curve is traced only once.
 
 The search does not depend on the kind of the curves or on the process that traces a curve. If the result of a
 work item (a part of a curve) is missing, the search stops and names this item. The caller then repeats the
@@ -49,7 +49,8 @@ class TracedCurves(Generic[AnyCurve]):
 
 @dataclass(slots=True)
 class CurveTracingState(Generic[AnyCurve]):
-    """State of the search for curves through seed points.
+    """State of the search for curves through seed points. Distances are along a row of the plane, as
+    fractions of its length.
 
     seed_distance_tolerance: a seed point lies on a curve if its distance is at most this number.
     seed_distances_along_row: distance of each seed point from the nearest curve so far, by index. curves:

@@ -46,8 +46,8 @@ class HopfStartSettings:
     a relative distance of 1e-3 above the Hopf point; 14 of 16 such rods reach their cycle from one of these
     orbits. The other two have y > 1 already at 3e-4 by the normal form, which then fails everywhere."""
     force_distance_ratio_of_stage: float = 3.0
-    """Relative distance of the force from the Hopf point at the end of a stage, divided by that at its
-    start."""
+    """The branch from the Hopf point is followed to the requested force in stages: relative distance of the
+    force from the Hopf point at the end of a stage, divided by its value at the start of the stage."""
     allowed_squared_amplitude_ratios: tuple[float, float] = 0.3, 3.0
     """Smallest and largest allowed ratio of the squared largest y of the solved orbit to the squared largest
     y of the normal form."""
@@ -58,9 +58,10 @@ class HopfStartSettings:
     """Newton's method does not start at the given force if the largest y of the normal form's orbit there, in
     L, exceeds this number: the true cycle of a rod of small axial drag then has less than half this y."""
     coarse_time_interval_count: int = 8
-    """Number of time intervals of the coarse mesh, over half a period."""
+    """Number of time intervals, over half a period, of the coarse mesh of the intermediate orbits on the
+    branch from the Hopf point to the cycle."""
     coarse_stage_count: int = 3
-    """Number of collocation stages per interval of the coarse mesh."""
+    """Number of collocation stages per time interval of the coarse mesh of the intermediate orbits."""
     intermediate_orbit_tolerance: float = 3e-3
     """Relative tolerance of Newton's method for the intermediate orbits on the branch."""
 

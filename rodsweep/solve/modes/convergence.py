@@ -24,8 +24,9 @@ class ModeMeshSettings:
     """Increase of the element order from the first mesh to the second; the errors of the modes fall by a
     factor of 100."""
     further_mesh_order_ratio: float = 4 / 3
-    """Element order of a further mesh, divided by the order before. Elements are not split: a mesh of halved
-    elements of lower order may be less accurate than its predecessor, as if rounding errors dominated."""
+    """Element order of a further mesh, divided by the order of the previous mesh. Elements are not split: a
+    mesh of halved elements of lower order may be less accurate than its predecessor, as if rounding errors
+    dominated."""
     max_finer_meshes: int = 4
     """Maximum number of meshes after the first, each finer than its predecessor."""
     max_unknowns: int = 1500

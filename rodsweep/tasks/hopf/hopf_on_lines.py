@@ -1,4 +1,5 @@
-"""Hopf points of the straight rod on the lines of points of a file, for figures and for `show`.
+"""Hopf points of the straight rod on the lines of points of a file, for figures and for `show`. A line: rods
+that differ in one parameter.
 
 The Hopf points depend only on the config and are stored before any point is solved. Hence the file has the
 Hopf points of all its lines after a run, an extension or a merge.

@@ -19,9 +19,11 @@ class ContourSettings(KernelConstants):
     """Largest allowed error of a tangent's phase, in radians; the errors of two tangents then sum to less
     than pi."""
     circle_point_count: int = 8
-    """Number of points of a circle at which |f| is evaluated; a multiple of 4."""
+    """Number of points of a circle at which |f|, f: D without its dominant change, is evaluated; a multiple
+    of 4."""
     circle_safety_factor: float = 1.5
-    """Safety factor on the largest |f| at the points of a circle, for larger values between the points."""
+    """Safety factor on the largest |f|, f: D without its dominant change, at the points of a circle, for
+    larger values between the points."""
     max_D_change_ratio: float = 0.9
     """Within the valid radius of a node w, f(v) = D(v) exp(-h(v)) differs from f(w) by at most this number
     times |D(w)|; h: tangent of log D, see `phase_node`."""
@@ -35,8 +37,9 @@ class ContourSettings(KernelConstants):
     """A known eigenvalue is divided out of D only if its error is below this fraction of its distance from
     the vertical line of the count."""
     max_divided_out_line_distance_over_w: float = 1.0
-    """Distance of a known eigenvalue w from the line, divided by max(|Im w|, |line|), below which the
-    eigenvalue is divided out of D. D without farther eigenvalues would not follow the dominant wave."""
+    """Distance of a known eigenvalue w from the vertical line of a count, divided by max(|Im w|, |Re of the
+    line|), below which the eigenvalue is divided out of D. D without farther eigenvalues would not follow the
+    dominant wave."""
     min_valid_radius_over_w: float = 1e-12
     """The count fails if the valid radius of a node w, the distance within which the phase of D is known, is
     below this number times |w|: a zero of D is too close."""
@@ -49,9 +52,11 @@ class ContourSettings(KernelConstants):
     """Distance between neighbouring nodes on the contour of a count, divided by the sum of their expected
     valid radii, within which the tangents of log D are accurate."""
     max_valid_radius_growth: float = 0.5
-    """Largest expected growth of the valid radius per distance; the next node is at most 3.6 radii away."""
+    """Expected growth of the valid radius from a node to the next one, at most, divided by their distance;
+    the next node is at most 3.6 radii away."""
     min_valid_over_circle_radius: float = 0.2
-    """If the valid radius is below this fraction of a circle's radius, a smaller circle is tried at once."""
+    """If the valid radius found from a circle is below this fraction of the radius of the circle, a smaller
+    circle is tried at once."""
     first_circle_radius_over_w_scale: float = 12.0
     """Radius of the first circle at a first node, divided by the distance in w over which an exponent of D
     changes by about 1."""

@@ -25,7 +25,7 @@ class ArmElementSettings(KernelConstants):
     """Largest length of an element divided by the distance from the cone's apex, where stiffnesses vanish."""
     max_coefficient_tail: float = 1e-9
     """An element is halved if one of the last two Legendre coefficients of nu, c2, ... over the element
-    exceeds this fraction of the largest value. The error of a Gauss method is about this fraction squared."""
+    exceeds this fraction of its largest value. The error of a Gauss method is about this fraction squared."""
     max_halvings: int = 28
     """Maximum number of halvings of an element, down to 4e-9 of the first length. If a factor of a profile
     grows a million times between two rows, a compliance, as a function of complex u, has a pole at only a
@@ -50,7 +50,8 @@ class ArmElementSettings(KernelConstants):
     lane_count: int = 4
     """Number of elements that are solved together by vector instructions."""
     max_terms: int = 28
-    """Maximum number of powers of w in a propagator; 24 suffice for exp(3.2)."""
+    """Maximum number of powers of w in a propagator; 24 suffice for the largest exponent 3.2 of an
+    element."""
     negligible_term_over_largest: float = 1e-18
     """The series of a propagator in w ends at the first term that is, in every entry of the propagator, below
     this fraction of the largest earlier term of the entry."""

@@ -232,7 +232,8 @@ def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Point
 
 
 def _with_attributes(plan: FilePlan, header: ResultHeader, config: Config) -> FilePlan:
-    """Copy of the plan with the attributes and status flags of the first file, and the joined config."""
+    """Copy of the plan with the attributes and status flags of the first file, and the joined config. Raises
+    InputError if the config is too long for an attribute."""
     text = config_yaml(config)
     tree = resolved_config(config)
     if max(len(text), len(str(tree))) > MAX_ATTRIBUTE_LENGTH:

@@ -1,8 +1,8 @@
 """Correction of a predicted point of a curve of folds or torus points over two parameters.
 
 Cycles near a special point form a family with two variables: arc length along the branch (`bordered`), and
-row coordinate. In this family the special points form a smooth curve, also at a cusp, where both parameters
-turn back: the zeros of a test function. The secant method finds a zero across the curve
+the second parameter. In this family the special points form a smooth curve, also at a cusp, where both
+parameters turn back: the zeros of a test function. The secant method finds a zero across the curve
 (`secant_method_across_curve`). The error is the difference between two meshes, measured at about every third
 point, plus the error of the secant method.
 """

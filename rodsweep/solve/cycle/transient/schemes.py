@@ -14,15 +14,16 @@ class TimeSchemeSettings:
     accurate scheme gives its sign, and for motions with a stored path."""
 
     max_growth_for_accurate_scheme: float = 0.01
-    """The accurate scheme is used if the modulus of the linear growth per period is below this number."""
+    """The accurate scheme is used if |Re w| T, the linear growth of the leading mode per period T, is below
+    this number."""
 
     max_default_scheme_growth_error: float = 1e-3
-    """Largest growth per period that integration errors of the default scheme and of the
-    fast-growth scheme may add; 3e-4 was measured."""
+    """Largest growth per period, as a change of Re w T, that integration errors of the default scheme and of
+    the fast-growth scheme may add; 3e-4 was measured."""
 
     max_accurate_scheme_growth_error: float = 1e-5
-    """Largest growth per period that integration errors of the accurate scheme may add; 8e-6 was
-    measured."""
+    """Largest growth per period, as a change of Re w T, that integration errors of the accurate scheme may
+    add; 8e-6 was measured."""
 
     default_scheme_max_steps_per_return: int = 200
     """Maximum number of time steps of the default scheme, divided by the allowed number of returns.
@@ -60,8 +61,8 @@ class TransientTimeSchemes(NamedTuple):
 
 
 def time_schemes_for_growth(growth: float, is_stored: bool) -> TransientTimeSchemes:
-    """Time schemes of a motion. growth: linear growth per period of the leading mode. is_stored: whether the
-    path of the motion is stored."""
+    """Time schemes of a motion. growth: linear growth Re w T of the leading mode per period T. is_stored:
+    whether the path of the motion is stored."""
     settings = TIME_SCHEME_SETTINGS
     # An error of the scheme could change the sign of a slow growth, and with it the outcome.
     if abs(growth) < settings.max_growth_for_accurate_scheme or is_stored:

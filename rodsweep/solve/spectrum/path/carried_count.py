@@ -27,14 +27,14 @@ class CarriedCountSettings(KernelConstants):
     line may lie."""
 
     rectangle_allowance_per_proof: int = 60
-    """The number of rectangles (`moving_line`) of one proof is at most this number plus
+    """One proof covers a strip of (Im w, p) by at most this number of rectangles (`moving_line`), plus
     `rectangles_per_point` times the number of points covered."""
     rectangles_per_point: int = 20
     """Number of rectangles allowed in a proof for each point covered: a new count costs as much as twenty."""
     min_wide_relative_half_gap: float = 0.2
-    """Gaps are treated as equally wide if their relative half-width exceeds this; the leftmost of these gaps
-    is taken. Relative half-width: half-width divided by the distance of the gap's middle from the imaginary
-    axis."""
+    """Gaps between real parts of eigenvalues are treated as equally wide if their relative half-width exceeds
+    this; the leftmost of these gaps is taken. Relative half-width: half-width divided by the distance of the
+    gap's middle from the imaginary axis."""
     min_relative_half_gap: float = 1e-6
     """No vertical line is placed in a gap between real parts of eigenvalues whose relative half-width (see
     `min_wide_relative_half_gap`) is less than this."""
