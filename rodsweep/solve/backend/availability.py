@@ -43,7 +43,8 @@ def _petsc_version_in_path(directory: Path) -> list[int]:
 
 
 def enter_directory(directory: Path) -> None:
-    """Makes `directory`, in which the first rank works, the working directory of this rank."""
+    """Makes `directory`, in which the first rank works, the working directory of this rank; raises
+    EnvironmentIncomplete if it cannot be entered."""
     try:
         os.chdir(directory)
     except OSError as error:

@@ -89,8 +89,8 @@ class Candidates:
 
     @property
     def has_found_only_growing_eigenvalues(self) -> bool:
-        """Whether some eigenvalues are found, all of them grow, and no eigenvalue to the right of them is
-        unresolved: all other eigenvalues are then far to the left of the shift."""
+        """Whether some roots of D are found, all of them grow, and every eigenvalue of the mesh farther to
+        the right belongs to one of them: all other eigenvalues are then far to the left of the shift."""
         w = self.roots.w
         return len(w) > 0 and bool((w.real > 0).all()) and not self.roots.unmatched_mesh_eigenvalue_count
 

@@ -169,7 +169,7 @@ class ArmProblem(TransverseProblem):
 
     def move_shift_right(self) -> None:
         """Doubles the shift, or moves it farther, beyond the growth rate of local waves at the ends, which
-        the sample points may miss at a thin tip; at most to the right end of the hull."""
+        the sample points may miss at a thin tip; at most to the right end of the hull of the spectrum."""
         right_end = self._hull.a**2 / (4 * (1 - self._hull.c))
         growth = KRYLOV_SETTINGS.shift_over_growth_rate * largest_growth_at_ends(self.rod)
         self.shift = max(self.shift, min(max(2 * self.shift, growth), right_end))
