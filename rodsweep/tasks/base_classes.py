@@ -41,8 +41,8 @@ class CertifiedTask(Task):
 
     @property
     def parameter_values_with_searches(self) -> dict[str, np.ndarray]:
-        """All values of each parameter at points, in searches and on lines, by name of the parameter, in
-        arrays of any shape."""
+        """Values of each parameter at points, at the ends of searched ranges, and among the task's
+        coordinates, by name of the parameter or coordinate, in arrays of any shape."""
         return self.points.parameter_values_of_rods | self.searched_range_ends() | self.coordinates()
 
     def arms_line(self) -> str:

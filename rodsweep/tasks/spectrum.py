@@ -200,7 +200,8 @@ def longitudinal_rates_and_errors_of_arm(
 
 
 def spectrum_values(result: "Spectrum") -> dict[str, Any]:
-    """Variables of the file for the spectrum of a point, or for the spectra of the points of a group."""
+    """Variables of the file for the spectrum of a point, or for the spectra of points that are solved
+    together."""
     values = outcome_values(MODE_VARIABLES + FOLLOWED_POINT_VARIABLES, result)
     if result.vectors is not None:
         for field_name, component in zip(("Y", "Theta"), result.vectors, strict=True):

@@ -44,7 +44,8 @@ class ArmFamilySettings(KernelConstants):
     spacing needs fewer arms near complex forces of the size of the stiffness, where the stretch of rubber has
     branch points."""
     max_propagator_entries: int = 500_000
-    """No family is made if the propagators of one arm have more entries: single arms are then faster."""
+    """No `ArmFamily` is made if the propagators of one arm have more entries than this: single arms are then
+    faster."""
     max_chebyshev_tail: float = 1e-15
     """The series has converged if the last two Chebyshev coefficients of every propagator are at most this
     number times its largest entry."""
@@ -110,8 +111,8 @@ def interpolated_family(path: ParameterPath, low: float, high: float, W: float) 
 
 
 def has_smooth_coefficients(path: ParameterPath, low: float, high: float) -> bool:
-    """Cheap test whether the arms' coefficients are smooth in p from `low` to `high`, as a family requires.
-    Raises ValueError at a p without a valid arm."""
+    """Cheap test whether the arms' coefficients are smooth in p from `low` to `high`, as an `ArmFamily`
+    requires. Raises ValueError at a p without a valid arm."""
     # The last trial has the most arms: if the coefficients are smooth at all, it mostly says so at once.
     for node_count, spacing in reversed(ARM_FAMILY_SETTINGS.trial_counts_and_spacings()):
         p = _interpolation_points(low, high, spacing * (high - low), node_count)

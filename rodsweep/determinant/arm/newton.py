@@ -42,7 +42,8 @@ ARM_ROOT_SETTINGS = ArmRootSettings()
 
 @compiled
 def _second_derivative_by_propagators(w: complex, S: float, level: PropagatorsUpToW) -> complex:
-    """D'' exp(-S) at w, by a central difference of D', from the propagators of `level`."""
+    """D'' exp(-S) at w, by a central difference of D', from `level`: W, and propagators valid for |w| <=
+    W."""
     h = DETERMINANT_SETTINGS.second_derivative_step_over_w * abs(w)
     value_after = determinant_from_propagators(w + h, level[0], level[1])
     value_before = determinant_from_propagators(w - h, level[0], level[1])
@@ -52,7 +53,7 @@ def _second_derivative_by_propagators(w: complex, S: float, level: PropagatorsUp
 
 @compiled
 def _root_error_from_value(w: complex, value: DeterminantValue, level: PropagatorsUpToW) -> float:
-    """`root_error` at w, from the value of D at w and the propagators of `level`."""
+    """`root_error` at w, from the value of D at w and from `level`: W, and propagators valid for |w| <= W."""
     rounding = rounding_error_from_propagators(w, level[0], level[1], value.log_scale)
     e = ARM_ROOT_SETTINGS.residual_factor_in_error_of_D * abs(value.D) + rounding
     size = abs(value.D_w)
@@ -68,14 +69,14 @@ def _root_error_from_value(w: complex, value: DeterminantValue, level: Propagato
 
 @compiled
 def _root_error_by_propagators(w: complex, level: PropagatorsUpToW) -> float:
-    """`root_error` at w, from the propagators of `level`."""
+    """`root_error` at w, from `level`: W, and propagators valid for |w| <= W."""
     return _root_error_from_value(w, determinant_from_propagators(w, level[0], level[1]), level)
 
 
 @compiled
 def _newton_from_guess(guess: complex, level: PropagatorsUpToW, last: float) -> tuple[complex, float, float]:
     """Returns (w, error of w, length of the last step) after Newton's method from `guess`, with the
-    propagators of `level`.
+    propagators of `level`, valid for |w| <= W.
 
     last: length of the previous step; the iteration ends at a step that hardly decreases
     (`ROOT_NEWTON_SETTINGS.min_stagnant_step_ratio`). The error is -1 if |w| exceeds W, the bound of the
@@ -118,7 +119,7 @@ def _newton_from_guesses(
 
 @compiled
 def _root_errors_by_propagators(w: Complex, level: PropagatorsUpToW) -> Array:
-    """`root_error` at all w, (n,), from the propagators of `level`."""
+    """`root_error` at all w, (n,), from `level`: W, and propagators valid for |w| <= W."""
     errors = np.empty(len(w))
     for k in range(len(w)):
         # Conjugates, which stand next to each other, have the same error.
@@ -129,7 +130,7 @@ def _root_errors_by_propagators(w: Complex, level: PropagatorsUpToW) -> Array:
 
 @compiled
 def _parabola_roots_by_propagators(middle: complex, level: PropagatorsUpToW) -> tuple[complex, complex]:
-    """`taylor_parabola_roots` about `middle`, with the propagators of `level`."""
+    """`taylor_parabola_roots` about `middle`, from `level`: W, and propagators valid for |w| <= W."""
     D, D_w, S, _ = determinant_from_propagators(middle, level[0], level[1])
     if middle.imag == 0:
         D = complex(D.real, 0.0)

@@ -113,8 +113,7 @@ class BautinProblem:
 
     def step(self, previous: Sequence[BautinCurvePoint], length: float) -> StepResult[BautinCurvePoint]:
         """The next point, predicted along the last chord, at first along the third parameter; raises
-        Unsolvable. previous: points so far. length: largest change of a parameter, as a fraction of its
-        range."""
+        Unsolvable. previous: points so far. length: largest parameter change divided by its range."""
         v = previous[-1].scaled_point
         tangent = np.array([0.0, 0.0, self.first_step_sign, 0.0])
         if len(previous) > 1:
@@ -145,8 +144,7 @@ class BautinProblem:
         return self.solve_point(guess, index), True
 
     def margins_to_curve_end(self, point: BautinCurvePoint) -> Array:
-        """Distances of a point from the lower and the upper end of the first, of the second and of the third
-        range, in coordinates from 0 to 1, minus a tolerance, (6,)."""
+        """Distances from both ends of ranges 1, 2 and 3, scaled to [0, 1], minus a tolerance, (6,)."""
         return (
             np.ravel([point.scaled_point[:3], 1 - point.scaled_point[:3]], order="F")
             - BAUTIN_SETTINGS.edge_tolerance
@@ -155,8 +153,8 @@ class BautinProblem:
     def point_at_zero_margin(
         self, previous: Sequence[BautinCurvePoint], outer: BautinCurvePoint, margin: int
     ) -> BautinCurvePoint | None:
-        """The point `outer` itself: `_point_cut_at_range_end` has shortened the step to the end of a range.
-        The other arguments are not used."""
+        """The point `outer`: `_point_cut_at_range_end` has cut the step at the end of a range. The other
+        arguments are not used."""
         return outer
 
     def is_closed_by(self, previous: Sequence[BautinCurvePoint], point: BautinCurvePoint) -> bool:

@@ -1,4 +1,5 @@
-"""Choice of the mesh of an orbit for a requested accuracy, from the coefficient tails of a nearby orbit."""
+"""Choice of the mesh of an orbit for a requested accuracy, from the coefficient tails of a nearby orbit: its
+last spectral coefficients, divided by the largest."""
 
 from dataclasses import replace
 from math import ceil, log

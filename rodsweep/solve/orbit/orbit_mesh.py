@@ -23,13 +23,15 @@ class OrbitMeshSettings:
     """Settings for the choice of the mesh of an orbit in space and time."""
 
     space_error_per_squared_tail: float = 5.0
-    """Predicted error of period and extrema due to the mesh in space, divided by the squared tail in space.
-    With `space_error_per_squared_tail` and `time_error_per_squared_tail` the first mesh suffices for five
-    rods in six, and costs a fifth more than necessary."""
+    """Predicted error of period and extrema due to the mesh in space, divided by the squared tail in space:
+    last Legendre coefficients over the largest. With `space_error_per_squared_tail` and
+    `time_error_per_squared_tail` the first mesh suffices for five rods in six, and costs a fifth more than
+    necessary."""
     time_error_per_squared_tail: float = 3.0
-    """Predicted error of period and extrema due to the mesh in time, divided by the squared tail in time."""
+    """Predicted error of period and extrema due to the mesh in time, divided by the squared tail in time:
+    last coefficient in an interval over the largest value."""
     min_coefficient_tail: float = 1e-15
-    """Lower limit of the tails from which a mesh is chosen; smaller tails are rounding errors."""
+    """Tails (last coefficients over the largest) below this are rounding errors and are replaced by it."""
     accuracy_fraction_in_space_or_time: float = 1 / 3
     """The mesh in space and the mesh in time are each chosen for this fraction of the requested accuracy."""
     min_element_order_change: int = 2

@@ -23,11 +23,12 @@ from .problem import TransverseProblem
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CandidateSettings(KernelConstants):
-    """Settings for the eigenvalues of a mesh, and for the lines right of which eigenvalues are counted."""
+    """Settings for the eigenvalues of a mesh, and for the vertical lines right of which eigenvalues are
+    counted."""
 
     min_wide_gap_over_real_part: float = 0.2
-    """A line for a count lies in a gap between successive real parts. For a stable rod, gaps are treated as
-    equally wide if their width, divided by |Re w| of the left eigenvalue, exceeds this."""
+    """The vertical line of a count lies in a gap between successive real parts. For a stable rod, gaps are
+    treated as equally wide if their width, divided by |Re w| of the left eigenvalue, exceeds this."""
     min_wide_gap_over_real_part_if_unstable: float = 0.05
     """Like `min_wide_gap_over_real_part`, for an unstable rod; less than `min_wide_gap_over_real_part`,
     because eigenvalues far to the left converge last and need a finer mesh."""
@@ -104,13 +105,13 @@ class Candidates:
 
 @dataclass(frozen=True, slots=True)
 class CountComparison:
-    """Numbers of eigenvalues to the right of a line. count: number of all eigenvalues, counted or proved
-    with D. found_count: number of the eigenvalues found."""
+    """Numbers of eigenvalues to the right of a vertical line. count: number of all eigenvalues, counted or
+    proved with D. found_count: number of the eigenvalues found."""
 
     count: EigenvalueCount
     found_count: int
     is_line_clear: bool
-    """Whether the distance of every found eigenvalue from the line is more than twice its error."""
+    """Whether the distance of every found eigenvalue from the vertical line is more than twice its error."""
 
     @property
     def agrees(self) -> bool:

@@ -146,8 +146,9 @@ class _GuardedSolver:
         return StorableOutcome(status, describe_exception(error), self.layout.fill_values_of_point | values)
 
     def solve_group(self, indices: NDArray[np.int64]) -> GroupResult:
-        """Result of a group of points, at `indices`, (n,). After an unforeseen exception the result has fill
-        values, and `is_solved` is False for every point, so that each point is solved alone."""
+        """Result of points that are solved together, with the flat indices `indices`, (n,). After an
+        unforeseen exception the result has fill values, and `is_solved` is False for every point, so that
+        each point is solved alone."""
         assert self.wrapped_solver.groups_and_group_solver is not None
         try:
             return self.wrapped_solver.groups_and_group_solver[1](indices)
@@ -204,7 +205,7 @@ class TracebackLog:
 
     def append_exception(self, place: str, error: Exception) -> None:
         """Appends the exception of points or of a work item to the log, unless this rank has logged
-        MAX_LOGGED_EXCEPTIONS. If `strict`, raises the exception again.
+        MAX_LOGGED_EXCEPTIONS. Raises the exception again if the log is strict.
 
         place: text naming the points or the work item. If this rank has logged the same traceback before,
         only the last line of the traceback is appended.

@@ -97,14 +97,14 @@ CONTOUR_SETTINGS = ContourSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NoCrossingSettings(KernelConstants):
-    """Settings for the discs that cover a line, and for the arms at which D is evaluated. f: see
+    """Settings for the discs that cover a vertical line, and for the arms at which D is evaluated. f: see
     `no_crossing`."""
 
     arm_count: int = 5
     """Number of arms of an interval at which D is evaluated, including the middle arm and both ends."""
     line_distance_over_last_w: float = 0.05
-    """The line lies left of the last requested eigenvalue w, or left of the imaginary axis if Re w > 0, at
-    the distance of this number times |w|."""
+    """The vertical line that no eigenvalue crosses lies left of the last requested eigenvalue w, or left of
+    the imaginary axis if Re w > 0, at the distance of this number times |w|."""
     between_arms_safety_factor: float = 1.5
     """Safety factor on the largest change of f between the evaluated arms, which covers all arms between
     them; f(v, p): D over its known factors and its dominant change, see the module `no_crossing`."""
@@ -118,7 +118,7 @@ class NoCrossingSettings(KernelConstants):
     """Distance of a point of a circle from a known eigenvalue, divided by the error of this eigenvalue, below
     which the circle is not used."""
     covered_length_over_radius: float = 0.98
-    """Length of the line that a disc covers on each side of its node, divided by the radius."""
+    """Length of the vertical line that a disc covers on each side of its node, divided by the radius."""
     min_radius_fraction_inside_W: float = 0.25
     """If the bound W of the propagators allows a disc of less than this fraction of the radius to be tried,
     propagators for a larger |w| are made."""

@@ -36,10 +36,10 @@ from .eigenvalue_prediction import FollowedEigenvalues, new_track, slice_track
 
 
 class ArmInterval(NamedTuple):
-    """Interval of a path: points p, (n,), at which eigenvalues were followed with one family of arms.
+    """Interval of a path: points p, (n,), at which eigenvalues were followed with one `ArmFamily`.
 
     track: the eigenvalues followed to these points. proved_counts: number of leading modes proved complete at
-    each point, (n,). family_point_count: number of given points inside the family, of which the first n were
+    each point, (n,). family_point_count: number of given points inside this family, of which the first n were
     reached. further_mode_count: number of modes followed in addition to the wanted modes.
     """
 
@@ -182,9 +182,9 @@ def _follow_with_further_modes(
 def arm_family_and_hulls(
     path: ParameterPath, p: Array, first_eigenvalues: Complex, mode_count: int
 ) -> tuple[ArmFamily, PathHulls] | None:
-    """(family of the arms at all p, (n,); hulls that contain the spectra of these arms); None if all p are
-    equal, if the arms are not smooth in p, or if no elements resolve an arm. first_eigenvalues: eigenvalues
-    at the first point, (m,), in descending order. mode_count: number of requested modes."""
+    """(`ArmFamily` of the arms at all p, (n,); hulls that contain the spectra of these arms); None if all p
+    are equal, if the arms are not smooth in p, or if no elements resolve an arm. first_eigenvalues:
+    eigenvalues at the first point, (m,), in descending order. mode_count: number of requested modes."""
     low = float(p.min())
     high = float(p.max())
     if not low < high:

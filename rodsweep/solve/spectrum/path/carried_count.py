@@ -1,4 +1,4 @@
-"""A count of eigenvalues carried along a path, as long as a proof with a moving line succeeds.
+"""A count of eigenvalues carried along a path, as long as a proof with a moving vertical line succeeds.
 
 At the first point it is proved that some number of leading followed eigenvalues are all eigenvalues to the
 right of a line. A line in a gap between followed eigenvalues is moved, with the gap, to another point. If no
@@ -30,7 +30,8 @@ class CarriedCountSettings(KernelConstants):
     """One proof covers a strip of (Im w, p) by at most this number of rectangles (`moving_line`), plus
     `rectangles_per_point` times the number of points covered."""
     rectangles_per_point: int = 20
-    """Number of rectangles allowed in a proof for each point covered: a new count costs as much as twenty."""
+    """Number of rectangles of a proof (`moving_line`) allowed for each point covered: a new count costs as
+    much as twenty rectangles."""
     min_wide_relative_half_gap: float = 0.2
     """Gaps between real parts of eigenvalues are treated as equally wide if their relative half-width exceeds
     this; the leftmost of these gaps is taken. Relative half-width: half-width divided by the distance of the
