@@ -39,7 +39,7 @@ class ThresholdsTask(CertifiedTask):
     uncertified_risk: ClassVar[str] = "crossings may be missed"
     """Consequence of a missing certificate, as `check` prints it."""
     modes_counted_per: ClassVar[str] = "line"
-    """The certificate counts the modes of some rods on each line along F."""
+    """The certificate counts the modes of some of the rods that differ only in F."""
 
     def headline_of_check(self) -> str:
         end_text = f"{self.config.thresholds.F_max:g}{search_end_below_crushing_clause(self.config)}"

@@ -187,7 +187,8 @@ def _second_state_lines(points: PointSelection) -> list[str]:
 
 
 def _point_count_clause(part: PointSelection, points: PointSelection) -> str:
-    """Clause on the number of points of `part` among those of `points`; empty if `points` has one point."""
+    """Clause " at m of n points", m: number of points of `part`, n: number of `points`, which contain `part`;
+    empty if n = 1."""
     return "" if points.count == 1 else f" at {part.count_of_total_text(points)}"
 
 

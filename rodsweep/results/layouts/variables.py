@@ -68,8 +68,8 @@ def flag_attributes(flags: Iterable[tuple[int, str]], dtype: str = "|i1") -> dic
 
 
 def real_variable(name: str, units: str, long_name: str, *dimensions: str) -> Variable:
-    """Description of a variable of floating-point numbers; nan stands for a missing number. dimensions:
-    dimensions after those of the points."""
+    """Description of a variable of floating-point numbers; nan stands for a missing number. dimensions: names
+    of the dimensions after the dimensions of the points."""
     return Variable(name, "<f8", np.nan, units, long_name, dimensions)
 
 
@@ -78,8 +78,8 @@ UNKNOWN_COUNT_LONG_NAME_SUFFIX = "; -1: not known"
 
 
 def integer_variable(name: str, long_name: str, *dimensions: str) -> Variable:
-    """Description of a variable of counts; -1 stands for an unknown count. dimensions: dimensions
-    after those of the points."""
+    """Description of a variable of counts; -1 stands for an unknown count. dimensions: names of the
+    dimensions after the dimensions of the points."""
     return Variable(name, "<i4", -1, "1", long_name, dimensions)
 
 
@@ -87,8 +87,8 @@ def word_variable(
     name: str, long_name: str, words: Iterable[str | tuple[int, str]], *dimensions: str
 ) -> Variable:
     """Description of a variable whose numbers stand for words. words: words, numbered from 0, or pairs
-    (stored number, word). dimensions: dimensions after those of the points. The fill value is -1 if a word
-    has the number -1, which means a missing value; otherwise 0."""
+    (stored number, word). dimensions: names of the dimensions after the dimensions of the points. The fill
+    value is -1 if a word has the number -1, which means a missing value; otherwise 0."""
     flags = tuple(entry if isinstance(entry, tuple) else (index, entry) for index, entry in enumerate(words))
     fill_value = -1 if any(value == -1 for value, _ in flags) else 0
     return Variable(name, "|i1", fill_value, "1", long_name, dimensions, flags)

@@ -70,8 +70,9 @@ def measured_branch_error_calibration(
 def _border_of_comparison(orbit: Orbit, derivatives: BranchDerivatives) -> Array:
     """Border, (3,), of the condition under which the cycle `orbit` is solved on a finer mesh, in components
     (deflection, log period, parameter): the unit tangent of the branch, so that the arc length is equal.
-    Close to the parameter coordinate 0, the direction of the parameter: at an equal arc length the finer mesh
-    might have a negative coordinate, which no rod has."""
+    Close to the parameter coordinate 0 (coordinate: 1/k of a stiffness k, else the value), the direction of
+    the parameter: at an equal arc length the finer mesh might have a negative coordinate, which no rod
+    has."""
     scale = derivatives.scale
     coordinate = orbit.form.rod.coordinate(scale.parameter_name)
     is_near_zero = abs(coordinate) < scale.min_coordinate_unit

@@ -131,8 +131,8 @@ def _deviations_of_normal_form(
 ) -> tuple[Array, Array]:
     """Returns (deviations, errors), (2,) each: relative deviations of period and largest tip y in the normal
     form of `hopf`, with exact coefficients, from the true cycle, and the errors of these deviations.
-    distance: distance of the cycle's parameter coordinate from the Hopf point. start: a solved cycle of the
-    branch near the Hopf point.
+    distance: distance of the true cycle from the Hopf point in the parameter coordinate. start: a solved
+    cycle of the branch near the Hopf point.
 
     Near the Hopf point these deviations are proportional to the distance. Every solved cycle there gives an
     estimate: its own deviation, scaled to `distance`. The estimate has two errors: the scaled error of the

@@ -26,7 +26,7 @@ def mesh_from_coefficient_tails(orbit: Orbit, accuracy: float, stage_count: int)
     """The coarsest mesh with `stage_count` stages that is expected to reach the relative accuracy `accuracy`,
     from the tails of the nearby orbit `orbit`. The order is at least `min_element_order`, and at most the
     order of `orbit` plus `max_element_order_increase`; the interval count is at least
-    `min_time_interval_count`, and at most that of `orbit` times `max_time_interval_count_ratio`
+    `min_time_interval_count`, and at most the interval count of `orbit` times `max_time_interval_count_ratio`
     (`ORBIT_MESH_SETTINGS`)."""
     orbit = with_node_spacing_of_arm(orbit)
     current_mesh = mesh_of_orbit(orbit)

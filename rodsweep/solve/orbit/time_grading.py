@@ -27,8 +27,8 @@ class TimeGradingSettings:
     """Largest amplitude of the grading dt/dtau - 1, t: time, tau: mesh time. The longest interval is then at
     most four times as long as the shortest."""
     min_interval_tail_ratio: float = 1e-4
-    """Lower limit of the tail of an interval divided by the largest tail: smaller tails may be rounding
-    errors, and have little effect on a smooth grading."""
+    """The tail of an interval (its last coefficient in time), divided by the largest tail, is raised to this
+    lower limit: smaller tails may be rounding errors, and have little effect on a smooth grading."""
     samples_per_time_node: int = 4
     """Number of equidistant times per node at which a function of the mesh time is evaluated to find its
     harmonics in time. A function of the time has fewer harmonics than the same function of the mesh time."""

@@ -36,8 +36,8 @@ class CandidateSettings(KernelConstants):
     """Distance from the last eigenvalue w found to the last vertical line tried for a count, to the left of
     w, divided by |w|."""
     relative_line_distance_from_leading_w: float = 0.5
-    """Distance from a followed leading eigenvalue w to the first line for a count, to the left of w, divided
-    by |w|. A count at a distant line needs fewer nodes than at a near line. A line at
+    """Distance from a followed leading eigenvalue w to the first vertical line for a count, to the left of w,
+    divided by |w|. A count at a distant line needs fewer nodes than at a near line. A line at
     `relative_line_distance_from_last_w` follows in case another eigenvalue lies between w and the first
     line."""
     min_relative_gap: float = 1e-6
@@ -134,7 +134,8 @@ class CheckedCandidates:
 
     @property
     def sort_key(self) -> tuple[bool, float]:
-        """Sort key, best candidates first: those with an undecided count last; then by increasing error."""
+        """Sort key, best candidates first: candidates with an undecided count come last; otherwise by
+        increasing error."""
         return self.comparison is not None and self.comparison.count.number is None, self.error_over_limit
 
 
@@ -165,9 +166,9 @@ def candidates_on_mesh(
 
 
 def compare_with_count(problem: TransverseProblem, roots: RootsOfD, mode_count: int) -> CountComparison:
-    """Number of eigenvalues to the right of a vertical line, by a proof or a count, compared with those
-    found. The line lies to the left of the `mode_count` leading eigenvalues and of all unstable eigenvalues.
-    roots: eigenvalues found, at least `mode_count`, by descending real part."""
+    """Number of eigenvalues to the right of a vertical line, by a proof or a count, compared with the number
+    found there. The line lies to the left of the `mode_count` leading eigenvalues and of all unstable
+    eigenvalues. roots: eigenvalues found, at least `mode_count`, by descending real part."""
     w: Any = roots.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = roots.error.tolist()
     # A proof is far cheaper than a count, so it is tried first.

@@ -176,8 +176,10 @@ def _errors_between_meshes(w: Complex, coarser_w: Complex, shift: float, roundin
 
     shift: modulus of the shift. rounding_scale: result of `_rounding_scale`. Two meshes may agree on one
     eigenvalue by chance. The mesh error of an eigenvalue is therefore the largest of three relative
-    differences between the meshes: that of the eigenvalue, and those of its two neighbours less their
-    rounding errors. Rounding errors, which are larger near a double eigenvalue, are added."""
+    differences between the meshes: the difference of the eigenvalue itself, and the differences of its two
+    neighbours less their rounding errors. Rounding errors, which are larger near a double eigenvalue, are
+    added.
+    """
     moduli = np.abs(w)
     separations = np.abs(w[:, None] - w) + np.diag(np.full(len(w), np.inf))
     # Close eigenvalues are ill-conditioned: a rounding error e of w changes the product (v - w1) (v - w2) by

@@ -114,7 +114,7 @@ class TransverseProblem(ABC):
 
     @cached_property
     def is_countable(self) -> bool:
-        """Whether a count can succeed; False if the count fails for every line at real part <= 0."""
+        """Whether a count can succeed at some vertical line; False if it fails at every real part <= 0."""
         return True
 
 

@@ -86,8 +86,9 @@ class CycleFamily:
         Unsolvable.
 
         row_coordinate: position of the second parameter of `start` on its axis, from 0 to 1. line: line of
-        the search. derivatives: derivatives from an earlier search, used if their direction is close to that
-        of `line`. is_other_mesh: whether `derivatives` were computed at the same point on another mesh.
+        the search. derivatives: derivatives from an earlier search, used if their direction is close to the
+        direction of `line`. is_other_mesh: whether `derivatives` were computed at the same point on another
+        mesh.
         """
         # Derivatives along another direction across the curve would mislead the secant method.
         is_usable = (

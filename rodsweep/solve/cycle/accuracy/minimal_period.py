@@ -39,8 +39,8 @@ MINIMAL_PERIOD_SETTINGS = MinimalPeriodSettings()
 def common_harmonic_divisor(motion: CycleMotion, min_ratio: float) -> int:
     """Greatest common divisor of the numbers of all harmonics of the bending strain larger than `min_ratio`
     times the largest harmonic; 0 if all harmonics are 0. If the harmonics of the tip's angle alone give 1,
-    those of the strain are not computed: a motion whose tip does not repeat within the period does not repeat
-    either."""
+    the harmonics of the strain are not computed: a motion whose tip does not repeat within the period does
+    not repeat either."""
     if _divisor_from_harmonic_sizes(motion.tip_angle_harmonic_sizes, min_ratio) == 1:
         return 1
     return int(_divisor_from_harmonic_sizes(motion.curvature_harmonic_sizes, min_ratio))

@@ -31,8 +31,8 @@ class TimeSchemeSettings:
     more, and ends at this maximum."""
 
     accurate_scheme_max_steps_per_return: int = 2000
-    """Maximum number of time steps of the accurate scheme, divided by the allowed number of returns;
-    its steps are a tenth as long as those of the default scheme."""
+    """Maximum number of time steps of the accurate scheme, divided by the allowed number of returns; its
+    steps are a tenth as long as the steps of the default scheme."""
 
     default_scheme_tolerance: float = 1e-5
     """Local tolerance of the default scheme."""

@@ -136,8 +136,8 @@ def substitute_stages(
 def _substitute_stage(B: Array, a: int, columns: Array, scaled_increment: Array, out: Array) -> None:
     """Writes the increments of stage number a, counted from 0, a >= 2, into out[a]. B: eliminated blocks,
     (blocks, n, n). columns: reduced right-hand sides, (s, k, n). scaled_increment: M times the increments of
-    the state at the start, (k, n). out: increments of all stages, (s, k, n), in which those of later stages
-    are known."""
+    the state at the start, (k, n). out: increments of all stages, (s, k, n), in which the increments of later
+    stages are given."""
     s = len(columns)
     out[a] = 0.0
     # `reduce_right_sides` has solved the last stage for a fixed start; the effect of the start is added.

@@ -67,9 +67,9 @@ def follow_interval(
     """The leading eigenvalues at the first points of p, (n,), that are reached with one `ArmFamily`; None if
     the first point fails, if no family is found, or if n is below `min_family_points`.
 
-    More eigenvalues are followed if the followed ones do not suffice to prove all growing modes complete, or,
-    without `counts_follow`, too few points are proved complete. counts_follow: whether the caller counts
-    eigenvalues at points without a proof. previous: its family is used again if it contains enough of p.
+    More eigenvalues are followed if these do not suffice to prove all growing modes complete, or, without
+    `counts_follow`, too few points are proved complete. counts_follow: whether the caller counts eigenvalues
+    at points without a proof. previous: its family is used again if it contains enough of p.
     """
     best: ArmInterval | None = None
     if len(p) < ARM_FOLLOWING_SETTINGS.min_family_points:

@@ -46,9 +46,10 @@ CARRIED_COUNT_SETTINGS = CarriedCountSettings()
 
 @compiled
 def line_and_relative_half_gap(track: FollowedEigenvalues, i: int, gap: int) -> tuple[float, float]:
-    """(real part of the line in the middle of a gap at point i, half-width of the gap divided by the modulus
-    of this real part). The half-width is at most `min_wide_relative_half_gap`, and 0 if the line is not to
-    the left of the imaginary axis. gap: number of eigenvalues to the right of the gap."""
+    """(real part of the vertical line in the middle of a gap between real parts of eigenvalues at point i,
+    half-width of the gap divided by the modulus of this real part). The half-width is at most
+    `min_wide_relative_half_gap`, and 0 if the line is not to the left of the imaginary axis. gap: number of
+    eigenvalues to the right of the gap."""
     right = track.w[i, track.descending_order[i, gap - 1]].real
     left = track.w[i, track.descending_order[i, gap]].real
     line = (right + left) / 2
@@ -59,8 +60,9 @@ def line_and_relative_half_gap(track: FollowedEigenvalues, i: int, gap: int) -> 
 
 @compiled
 def count_right_of_widest_gap(track: FollowedEigenvalues, i: int, modes: int) -> int:
-    """Number of eigenvalues to the right of the widest gap at point i; 0 if no gap is wide enough. The gap
-    lies to the left of the `modes` leading eigenvalues and of the imaginary axis."""
+    """Number of eigenvalues to the right of the widest gap between real parts of eigenvalues at point i; 0 if
+    no gap is wide enough. The gap lies to the left of the `modes` leading eigenvalues and of the imaginary
+    axis."""
     best_gap = 0
     max_width = CARRIED_COUNT_SETTINGS.min_relative_half_gap
     for gap in range(modes, track.w.shape[1]):
@@ -137,7 +139,7 @@ def last_point_with_carried_count(
     """Index of the last point to which the count at the first point can be carried.
 
     coefficients: (F, nu, c2, gamma3) at each point, (points, 4). p: path variables, (points,). direction:
-    d(F, nu, c2, gamma3)/dp. modes: number of requested modes, to the left of which every line lies.
+    d(F, nu, c2, gamma3)/dp. modes: number of requested modes, to the left of which every vertical line lies.
     proved_counts: number of leading eigenvalues that are all eigenvalues to the right of a line, (points,);
     given at the first point, filled up to the last point reached.
     """
