@@ -176,7 +176,7 @@ def _sampled_growth_and_wave_number(
 ) -> tuple[Array, Array]:
     """`_scaled_peak_growth_and_wave_number` by comparison of WAVE_NUMBER_SAMPLE_COUNT wave numbers, used if g
     = nu + F c2 <= 0 at any point: under such a pull the growth rate, as a function of the wave number, may
-    have its maximum at 0 or none. Arguments: as there, with the shape (..., 1)."""
+    have its maximum at 0, or no maximum. Arguments: as there, with the shape (..., 1)."""
     product = c2 * gamma3
     K = max_K * SQUARED_WAVE_NUMBER_RATIOS
     # Both branches of each `where` are evaluated, also where they divide by 0.

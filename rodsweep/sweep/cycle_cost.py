@@ -9,7 +9,7 @@ CYCLE_FROM_MODE_SECONDS = 0.1
 """Time of a limit cycle computed from the leading mode, in s, close to the time in the benchmark."""
 MIN_PULL_OF_SLOW_MOTION = 500.0
 """Smallest pull, in k3/L^2, under which the motion of a rod returns to the straight state so slowly that it
-is followed to its end: under a pull of 100 the motion takes 0.1 s, of 1000 7 s."""
+is followed to its end: under a pull of 100 its integration takes 0.1 s, under 1000 it takes 7 s."""
 PULLED_MOTION_SECONDS = 8.0
 """Time of the motion of a rod under a pull of at least MIN_PULL_OF_SLOW_MOTION, in s: 6.5 to 9 s for pulls of
 1e3 to 1e4."""

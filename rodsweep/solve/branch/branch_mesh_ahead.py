@@ -21,8 +21,8 @@ def expected_error_growth(
 ) -> Array:
     """Factors by which the errors in space and in time, (2,), are expected to grow from the last cycle of
     `points` to the next cycle whose errors are measured: the growth of the coefficient tails over the last
-    steps, or the growth of the measured errors of the parameter if larger. measured: last cycle before
-    `points` with measured errors. measured_end: the last cycle of `points`, with measured errors."""
+    steps, or the growth of the measured errors of the parameter if larger. measured: the cycle before
+    `points`, whose errors were measured. measured_end: the last cycle of `points`, with measured errors."""
     end = points[-1]
     # Tails are compared on one mesh.
     known = next(

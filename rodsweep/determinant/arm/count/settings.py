@@ -52,8 +52,8 @@ class ContourSettings(KernelConstants):
     """Distance between neighbouring nodes on the contour of a count, divided by the sum of their expected
     valid radii, within which the tangents of log D are accurate."""
     max_valid_radius_growth: float = 0.5
-    """Expected growth of the valid radius from a node to the next one, at most, divided by their distance;
-    the next node is at most 3.6 radii away."""
+    """Upper limit of the expected growth of the valid radius from one node to the next, divided by the
+    distance of the nodes; the next node is at most 3.6 radii away."""
     min_valid_over_circle_radius: float = 0.2
     """If the valid radius found from a circle is below this fraction of the radius of the circle, a smaller
     circle is tried at once."""
@@ -107,7 +107,8 @@ class NoCrossingSettings(KernelConstants):
     the imaginary axis if Re w > 0, at the distance of this number times |w|."""
     between_arms_safety_factor: float = 1.5
     """Safety factor on the largest change of f between the evaluated arms, which covers all arms between
-    them; f(v, p): D over its known factors and its dominant change, see the module `no_crossing`."""
+    them; f(v, p): D divided by the factors of its known zeros and by its dominant exponential, see the module
+    `no_crossing`."""
     max_divided_out_distance_over_radius: float = 3.0
     """Distance of a known eigenvalue from a node, divided by the radius of the node's disc, below which the
     eigenvalue is divided out of D."""

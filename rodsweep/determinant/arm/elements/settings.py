@@ -28,8 +28,8 @@ class ArmElementSettings(KernelConstants):
     exceeds this fraction of its largest value. The error of a Gauss method is about this fraction squared."""
     max_halvings: int = 28
     """Maximum number of halvings of an element, down to 4e-9 of the first length. If a factor of a profile
-    grows a million times between two rows, a compliance, as a function of complex u, has a pole at only a
-    millionth of their distance from the row of the small value."""
+    grows a million times between two rows, a compliance, as a function of complex u, has a pole whose
+    distance from the row with the small factor is only a millionth of the distance between the rows."""
     min_W: float = 16.0
     """Smallest W, the bound of |w| up to which elements are valid; for smaller |w| the load and the taper,
     not w, determine the length of elements. If the mean of c2 gamma2 + c3 gamma3 along the arm exceeds 1,

@@ -1,4 +1,4 @@
-"""Spectra of neighbouring rods along one parameter: eigenvalues, and a count, are followed from rod to rod.
+"""Spectra of neighbouring rods along one parameter: eigenvalues and their count are followed from rod to rod.
 
 Krylov-Schur solves the first rod for a few modes more than requested, and solves again at a rod where
 following stops, or where a count of eigenvalues differs from the number found. Rods without a proof or with
