@@ -165,7 +165,7 @@ def _error_and_log_scale_by_squares(
     exponents: tuple[complex, complex, complex], terms: _DispersionTerms, product: _SquaredExponentProduct
 ) -> tuple[float, float]:
     """Returns (rounding error of (z+' E(z+) + z-' E(z-)) exp(-S), S) as computed by `even_sum_by_squares`.
-    exponents: (P, z+, z-)."""
+    exponents: (P, z+, z-); ' is d/dw."""
     P, large, small = exponents
     slope_difference = terms.P_squared_w / P
     if modulus(large) < modulus(small):

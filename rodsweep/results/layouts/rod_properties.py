@@ -41,8 +41,8 @@ def has_linear_law(config: Mapping[str, Any]) -> bool:
 def with_certified_long_name(
     variables: tuple[Variable, ...], config: Mapping[str, Any], noun: str
 ) -> tuple[Variable, ...]:
-    """The variables; if a covering cannot be used for the rods, with a long name of `certified` that
-    describes confirmation by counts only.
+    """The variables; if completeness cannot be proved for the rods by a cover of boxes, with a long name of
+    `certified` that describes confirmation by counts only.
 
     noun: name of the listed items, such as "Hopf points".
     """

@@ -149,8 +149,8 @@ class _Tangent:
 
 
 def _tangent_towards_larger_cycles(orbit: Orbit, name: str, limits: BranchLimits) -> _Tangent:
-    """Tangent of a branch along the parameter `name` towards larger deflections, at `orbit` on a mesh for the
-    accuracy of the branch."""
+    """Tangent of a branch along the parameter `name` towards larger deflections, at `orbit`, which is first
+    interpolated to a mesh for the accuracy of the branch."""
     mesh = mesh_from_coefficient_tails(orbit, limits.accuracy, cheapest_stage_count(limits.accuracy))
     orbit = mesh.interpolated_orbit(orbit)
     tip_y = abs(float(orbit.form.tip_coordinates(orbit.start_state)[1]))

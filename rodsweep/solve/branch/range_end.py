@@ -72,7 +72,8 @@ def _step_length_into_range(beyond: Callable[[float], float], step: float) -> fl
     or beyond an end of the range: the branch enters the range and leaves it again behind a fold. 0 if the
     step leads out of the range at once.
 
-    beyond: signed distance from the end of the range, by length. step: length of the step.
+    beyond: function from a length along the step to the signed distance of the branch parameter from the end
+    of the range. step: length of the step.
     """
     length = step / 2
     while length > BRANCH_END_SETTINGS.range_end_step_tolerance * step:

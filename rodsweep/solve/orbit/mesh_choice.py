@@ -67,8 +67,8 @@ def grading_and_interval_count_ratio(
     orbit: Orbit, max_tail: float, stage_count: int
 ) -> tuple[TimeGrading, float]:
     """Returns (grading, ratio): the grading of the time intervals that needs the fewest intervals, and the
-    ratio of this number to the number of intervals of `orbit`. max_tail: largest allowed tail in time.
-    stage_count: number of stages of an interval."""
+    ratio of this number to the number of intervals of `orbit`. max_tail: largest allowed tail in time, see
+    the module. stage_count: number of stages of an interval."""
     # For a different number of stages the tail in an interval is about a power of the known tail.
     tails = np.maximum(time_tails_of_intervals(orbit), ORBIT_MESH_SETTINGS.min_coefficient_tail) ** (
         stage_count / orbit.stage_count

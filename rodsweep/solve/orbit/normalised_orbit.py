@@ -145,7 +145,7 @@ def compiled_tangent_of_normalised_orbit(values: Array, tangent: Array, r: Norma
 @compiled_with_reordered_sums
 def start_bending_moment_inner_product(values: Array, other_values: Array, r: NormalisationArrays) -> float:
     """Integral over the rod of m3 m3' at t = 0, m3 and m3' from the orbit values `values` and `other_values`,
-    (N,). With equal arguments this is the squared size."""
+    (N,). With equal arguments this is the squared size. r: result of `normalisation_arrays`."""
     total = 0.0
     for i in range(len(r.moment_quadrature_weights)):
         total += r.moment_quadrature_weights[i] * values[i] * other_values[i]

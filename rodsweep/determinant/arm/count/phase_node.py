@@ -146,8 +146,8 @@ def _node_inside_spectrum_hull(
 
 @compiled
 def _dominant_exponent_and_slope(w: complex, rho: float, samples: ExponentSamples) -> tuple[complex, complex]:
-    """(Phi, dPhi/dw) of the dominant wave at w if the radius rho of the circle is small enough, else (0,
-    0)."""
+    """(Phi, dPhi/dw) of the dominant wave at w if the radius rho of the circle about w is at most
+    `max_dominant_wave_radius_over_im_w` Im w, else (0, 0)."""
     if rho <= CONTOUR_SETTINGS.max_dominant_wave_radius_over_im_w * w.imag:
         return dominant_wave_exponent(w, samples), dominant_exponent_slope(w, samples)
     return 0j, 0j

@@ -86,8 +86,9 @@ class ContourSettings(KernelConstants):
 
     @property
     def circle_directions(self) -> tuple[complex, ...]:
-        """Unit vectors to the points of a circle, in the order of evaluation. Successive points differ much
-        in (v - w)^2, so that circles with too large |f| are mostly rejected after one or two points."""
+        """Unit vectors from the centre w of a circle to its points v, in the order of evaluation. Successive
+        points differ much in (v - w)^2, so that circles with too large |f|, f as in `phase_node`, are mostly
+        rejected after one or two points."""
         order = np.arange(self.circle_point_count).reshape(-1, 2, 2).swapaxes(1, 2).ravel()
         return tuple(np.exp(2j * np.pi * (order + 0.5) / self.circle_point_count).tolist())
 

@@ -214,8 +214,9 @@ def _positions_before_first_change(positions: Indices, new_length: int, upward: 
 
 
 def _is_group_unchanged(positions: Indices, new_length: int) -> NDArray[np.bool_]:
-    """Whether the group of each old value, (n,), is unchanged on the new axis. positions: new position of
-    each old value, (n,). new_length: number of values on the new axis."""
+    """Whether the group of each old value, (n,), a stretch of at most MAX_GROUP_POINTS successive values on
+    the axis, is unchanged on the new axis. positions: new position of each old value, (n,). new_length:
+    number of values on the new axis."""
     indices = np.arange(len(positions))
     stretch_ends = (indices // MAX_GROUP_POINTS + 1) * MAX_GROUP_POINTS
     same_length = np.minimum(stretch_ends, len(positions)) == np.minimum(stretch_ends, new_length)

@@ -77,8 +77,8 @@ class SecantSearch:
         self.nearby_solver = NearbyCycleSolver(family, self.orbit, contraction)
 
     def make_step(self) -> SolvedCurvePoint | None:
-        """Makes one secant step. Returns the point of the curve after the last step, otherwise None. Raises
-        Unsolvable."""
+        """Makes one secant step. Returns the point of the curve if this step is accurate enough to be the
+        last, otherwise None. Raises Unsolvable."""
         current = self._solve_at_distance()
         span = 0.0
         if measured_derivatives := self._derivatives_from_last_two_cycles(current):
@@ -120,8 +120,8 @@ class SecantSearch:
 
     def _distance_from_curve_after_step(self, step: float, span: float) -> float:
         """Estimated distance from the curve after a last, linear step of the signed length `step`. span:
-        distance between the two cycles of the measured derivative; 0 if the derivative was not measured at
-        this step."""
+        distance between the two cycles from which the derivative was measured at this step; 0 if none was
+        measured."""
         if step == 0:
             return 0.0  # even if the curvature is unknown
         if span:
@@ -149,7 +149,7 @@ class SecantSearch:
         return is_near and self._parameter_error_at_distance(error) <= max_error
 
     def _solve_at_distance(self) -> _SecantIterate:
-        """The cycle at the current distance across the curve, with its test function; raises Unsolvable."""
+        """The cycle at the current distance along the line, with its test value; raises Unsolvable."""
         family = self.family
         rates = self.derivatives
         length = self.start_arc_length + self.distance * float(self.line.direction[0])
@@ -169,8 +169,8 @@ class SecantSearch:
         return _SecantIterate(self.orbit, vectors, test_value, self.distance)
 
     def _derivatives_from_last_two_cycles(self, current: _SecantIterate) -> NormalDerivatives | None:
-        """Derivatives across the curve from the last cycle and the cycle `current`; None if `current` is the
-        first cycle, or if the two cycles are too close or have equal test functions."""
+        """Derivatives across the curve from the previous cycle and `current`; None if `current` is the first
+        cycle, or if the two cycles are too close or have equal test functions."""
         previous = self.previous
         # Equal values would give a slope of 0, by which the next step is divided.
         if previous is None or current.test_value == previous.test_value:
@@ -204,7 +204,7 @@ class SecantSearch:
                 )
 
     def _predicted_orbit(self, step: float, derivatives: NormalDerivatives) -> Orbit:
-        """The last cycle, moved by `step` across the curve along `derivatives`."""
+        """The current cycle, moved by `step` across the curve along `derivatives`."""
         change = step * derivatives.orbit_derivative_on_mesh_of(self.orbit)
         # The prediction also moves the cycle away from the orbit at which the matrix was assembled.
         self.nearby_solver.distance_from_matrix_orbit += relative_change(self.orbit, change[:-1])
@@ -213,7 +213,7 @@ class SecantSearch:
     def _curve_point(
         self, step: float, derivatives: NormalDerivatives, distance_error: float
     ) -> SolvedCurvePoint:
-        """The point of the curve: the last cycle, moved by `step` across the curve along `derivatives`.
+        """The point of the curve: the current cycle, moved by `step` across the curve along `derivatives`.
         distance_error: distance of this point from the curve."""
         family = self.family
         matrix = self.nearby_solver.matrix

@@ -173,8 +173,8 @@ def _subtract_first_stage_terms(
     two stages.
 
     parts: Z, W, Z W, W Z and Z W Z of the module docstring, (5, n, n). place: (stage, column of d) of the
-    block; d: (s, s + 1). rows: first row, and last row plus 1. scale: factors of the columns of the block,
-    (n,).
+    block. d: differentiation matrix, (s, s + 1). rows: first row, and last row plus 1. scale: factors of the
+    columns of the block, (n,).
     """
     i, c = place
     first = d[0, c]

@@ -140,7 +140,7 @@ def _follow_with_further_modes(
     previous: ArmInterval | None,
 ) -> ArmInterval | None:
     """The first points of p, (n,), that are reached as in `follow_interval`, with exactly `added_mode_count`
-    modes followed in addition to the wanted modes; None if the first point fails or no family is found."""
+    modes followed besides the wanted modes; None if the first point fails or no `ArmFamily` is found."""
     settings = ARM_FOLLOWING_SETTINGS
     first_w = _eigenvalues_of_previous_interval(previous, float(p[0]), request, added_mode_count)
     if first_w is None:
