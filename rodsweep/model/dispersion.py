@@ -19,7 +19,8 @@ from .material.rod_material import LocalCoefficients, RodMaterial
 from .rod import Rod
 
 WAVE_NUMBER_SAMPLE_COUNT = 64
-"""Number of samples of K = kappa^2, with equal ratios. A ratio of 1.15 suffices for an estimate."""
+"""Number of samples of K = kappa^2, kappa: wave number, in geometric progression. A ratio of 1.15 suffices
+for an estimate."""
 SAMPLES_PER_INTERVAL = 33
 """Number of points between two neighbouring breaks of an arm's profile at which local waves are computed, if
 the coefficients vary."""

@@ -66,7 +66,7 @@ class Ranks:
             wait_seconds = min(2 * wait_seconds, LONGEST_BARRIER_PAUSE_SECONDS)
 
     def require_on_all_ranks(self, work: Callable[[], object]) -> None:
-        """Calls `work` on every rank. If any rank raises a `UserError`, all ranks raise this refusal."""
+        """Calls `work` on every rank. If any rank raises a `UserError`, all ranks raise this error."""
         first_error: UserError | None = None
         try:
             work()
@@ -97,7 +97,7 @@ class Ranks:
     def abort_all_ranks_on_error(self) -> Iterator[None]:
         """Context in which an exception on any rank aborts all ranks, with the rank's message and exit
         status. Otherwise all other ranks would wait forever. An exception propagates without abort if there
-        is a single rank, or if all ranks raise the same refusal."""
+        is a single rank, or if all ranks raise the same `UserError`."""
         try:
             yield
         except BaseException as error:

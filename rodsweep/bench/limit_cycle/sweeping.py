@@ -134,8 +134,8 @@ def solve_timed_points(parameter_name: str, accuracy: float, rod: SweptRod) -> C
 
 
 def solve_without_neighbour(start_kind: str, accuracy: float, rod: SweptRod) -> CycleOutcome:
-    """The cycle of a rod to a relative accuracy, without a neighbour; raises ArithmeticError if no stable
-    cycle is found. start_kind: value of the option `start`."""
+    """The cycle of a rod to a relative accuracy, not started from the cycle of a neighbouring rod; raises
+    ArithmeticError if no stable cycle is found. start_kind: value of the option `start`."""
     request = replace(cycle_request(accuracy), start=start_kind)
     return require_cycle(solve_cycle(rod.rod, request, workspace=rod.workspace))
 

@@ -1,1 +1,2 @@
-"""Proofs about the spectrum of a uniform rod: a-priori box, counts of eigenvalues, covering of crossings."""
+"""Proofs about the spectrum of a uniform rod: a-priori box, counts of eigenvalues, cover of crossings by
+boxes."""

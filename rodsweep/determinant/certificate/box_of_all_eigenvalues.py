@@ -34,7 +34,8 @@ class BoxSettings(KernelConstants):
     padding_over_depth: float = 0.01
     """This fraction of `depth` is added to both bounds of the box of the eigenvalues with Re w >= -depth."""
     min_padding: float = 1e-6
-    """Length added to both bounds of the box, in 1/tau2; far below |w| = 12 of a rod at rest."""
+    """Length added to both bounds of the box, in 1/tau2; far below the smallest |w| of a rod without load,
+    12."""
     relative_bound_excess: float = 0.01
     """Every bound is enlarged by this fraction, to cover the rounding errors of the bound itself."""
     max_D_deviation_from_one: float = 0.5

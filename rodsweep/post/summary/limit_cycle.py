@@ -1,4 +1,4 @@
-"""Limit cycles in `rodsweep show`: which rods beat, variables of the cycles, and reliability."""
+"""Limit cycles in `rodsweep show`: which rods oscillate, variables of the cycles, and reliability."""
 
 from collections.abc import Callable
 
@@ -42,14 +42,14 @@ TORUS_SENTENCE = (
 )
 """Sentence on the motions on tori."""
 CYCLES_SENTENCE = "period: {period} tau2; largest y of the tip: {tip_y_max} L"
-"""Sentence of the answer on the cycles of several points."""
+"""Sentence of the summary on the period and amplitude of the cycles of several points."""
 CYCLE_DETAIL_SENTENCES = (
     "tip: least x {tip_x_min} L, largest x {tip_x_max} L, largest |theta| {tip_theta_max} rad",
     "mean power of the force: {injection_mean} k3/(L tau2)",
     "largest |Floquet multiplier|: {multiplier}; returns of the tip in the integration: {periods}; smallest "
     "stretch h1: {least_stretch}",
 )
-"""Sentences on further results about the cycles."""
+"""Further sentences of the summary on cycles: extrema, power, multipliers, returns and stretch."""
 POSSIBLE_CYCLE_REASON = (
     "the Hopf point at F = {subcritical_F} is subcritical, so a larger initial deflection may lead to a "
     "cycle; `task: branch` follows the branch of these cycles"

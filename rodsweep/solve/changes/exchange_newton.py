@@ -23,8 +23,9 @@ class ExchangeNewtonSettings:
     relative_rounding_of_path_variable: float = 4e-16
     """Relative rounding error of the path variable: two units in the last place."""
     max_relative_eigenvalue_error: float = 1e-6
-    """No overtaking is found from eigenvalues w whose error exceeds this multiple of |w|: Newton's method has
-    not converged, for example near a double eigenvalue."""
+    """Newton's method for a point where a real eigenvalue and a pair have equal real parts fails if the error
+    of an eigenvalue w exceeds this multiple of |w|: w has not converged, for example near a double
+    eigenvalue."""
 
 
 EXCHANGE_NEWTON_SETTINGS = ExchangeNewtonSettings()

@@ -72,7 +72,7 @@ class ThresholdSearchResult:
 class PathCrossings:
     """Crossings of the imaginary axis along `path`. undecided_intervals: intervals of the parameter that may
     contain further crossings. search_end: end of the search. determinant_evaluation_count: number of
-    evaluations of D in the covering."""
+    evaluations of D for the cover by boxes."""
 
     path: ParameterPath
     crossings: list[Threshold]

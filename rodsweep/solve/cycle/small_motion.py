@@ -27,8 +27,8 @@ class MotionDecaySettings:
 
     max_cubic_to_linear_growth_ratio: float = 0.02
     """A motion decays if Re w < 0 and |Re c| a^2 < max_cubic_to_linear_growth_ratio |Re w|. a: tip's y at the
-    start, w: leading eigenvalue, c: cubic coefficient of the normal form, with
-    max_cubic_to_linear_growth_ratio as relative accuracy."""
+    start, w: leading eigenvalue, c: cubic coefficient of the normal form, computed to this relative
+    accuracy."""
 
 
 MOTION_DECAY_SETTINGS = MotionDecaySettings()

@@ -36,9 +36,11 @@ class BautinPointSettings:
     """Relative accuracy of c at first; if the sign of Re c is undecided, c is recomputed with the requested
     accuracy."""
     brent_tolerance: float = 1e-13
-    """Tolerance of Brent's method, as a fraction of the distance between two neighbours."""
+    """Tolerance of Brent's method, as a fraction of the distance between two neighbouring stored points of
+    the Hopf curve."""
     difference_step_over_spacing: float = 1e-3
-    """Difference step for the derivative of Re c, as a fraction of the distance between two neighbours."""
+    """Difference step for the derivative of Re c, as a fraction of the distance between two neighbouring
+    stored points of the Hopf curve."""
     max_relative_landau_real_part: float = 1e-6
     """A root found by Brent's method is a zero of Re c only if |Re c|/|c| is at most this number; otherwise
     Re c jumps from negative to positive values."""

@@ -144,8 +144,8 @@ class OrbitMesh:
 
     @property
     def as_array(self) -> Array:
-        """The mesh as one array for storage, (3 elements + 7,): order, intervals, stages, grading, edges,
-        ratios of the orders, spacing ratios."""
+        """The mesh as one array for storage, (3 elements + 7,): largest order, numbers of intervals and
+        stages, three numbers of the grading, edges, ratios of the orders, spacing ratios."""
         ones = (1.0,) * self.element_count
         ratios = *(self.order_ratios or ones), *(self.spacing_ratios or ones)
         counts = self.order, self.interval_count, self.stage_count

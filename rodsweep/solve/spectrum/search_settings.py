@@ -25,7 +25,7 @@ class SearchSettings:
     max_stalled_refinements: int = 2
     """After this number of successive refinements without progress, the error is taken to be rounding."""
     max_progress_error_ratio: float = 0.5
-    """A solve is progress if its error is smaller than this fraction of the smallest earlier error."""
+    """A solve counts as progress if its error is smaller than this fraction of the smallest earlier error."""
     max_error_over_limit: float = 0.5
     """A spectrum is accepted if error estimate <= `max_error_over_limit` * requested accuracy. The factor is
     below 1 because an estimate may be too small."""

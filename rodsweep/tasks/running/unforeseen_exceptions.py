@@ -1,7 +1,8 @@
 """Reasons why points failed, and treatment of unforeseen exceptions, which are bugs: the point gets the
 status `failed`, the sweep continues.
 
-Refusals and errors of the operating system are no bugs and are not caught, because they concern every point.
+Any `UserError` and errors of the operating system are no bugs and are not caught, because they concern every
+point.
 """
 
 import os

@@ -17,7 +17,7 @@ class ImaginaryAxisModeSettings:
     max_change_unexplained_by_slopes: float = 0.1
     """If the tangent of a pair meets the imaginary axis within an interval, the slopes must explain the
     change of growth rate and of frequency to this fraction; else both ends may show different pairs. Two
-    pairs that exchanged their parts agreed to 0.12 by chance."""
+    different pairs, one at each end, agreed to 0.12 by chance."""
     max_growth_rate_per_frequency: float = 0.15
     """A growing pair at one end of an interval is expected among the growing pairs near the imaginary axis at
     the opposite end if its growth rate there, by its tangent, is positive and at most this multiple of its

@@ -1,4 +1,4 @@
-"""Rod and mesh for the integration of a motion; a nearby rod replaces a limiting rod (k1 = inf, ...)."""
+"""Rod and mesh for the integration of a motion; huge or infinite stiffnesses and tiny drags are replaced."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
