@@ -176,7 +176,8 @@ class LinearConfig(Config):
     """Axes of the parameters, a file of points, or an arm."""
 
     nonlinear_parameters_used: ClassVar[tuple[str, ...]] = ()
-    """Names of the parameters that only the nonlinear problem has but that some options of the task use."""
+    """Names of parameters that the linear problem does not contain, but that some options of this linear task
+    use."""
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:

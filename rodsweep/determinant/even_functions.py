@@ -26,15 +26,15 @@ class EvenFunctionSettings(KernelConstants):
     max_size_for_series: float = 1.5
     """If |M| + 2 |P| is below this number, `even_functions_by_series` computes s and d."""
     max_product_ratio_for_squares: float = 0.1
-    """Otherwise, if |z+ z-| / (|M|^2 + 4 |P|^2) is at most this number, `even_sum_by_squares` computes s and
-    d; else `even_functions_by_roots` does."""
+    """If the series is not used (see `max_size_for_series`) and |z+ z-| / (|M|^2 + 4 |P|^2) is at most this
+    number, `even_sum_by_squares` computes s and d; else `even_functions_by_roots` does."""
     log_scale_rounding_in_epsilons: float = 3.0
     """Bound of the relative rounding error of S, the logarithm of the scale, divided by
     TWO_MACHINE_EPSILONS."""
     max_log_scale_without_rounding: float = 8.0
-    """Up to this S, the logarithm of the scale of D, the other rounding errors of D exceed the rounding error
-    of exp(-S). At a larger S only the exponentially small eigenvalues of strongly pulled rods depend on
-    exp(-S)."""
+    """S is the logarithm of the scale of D. Up to this S, the rounding error of exp(-S) is smaller than the
+    other rounding errors of D, and is not counted. At a larger S only the exponentially small eigenvalues of
+    strongly pulled rods depend on exp(-S)."""
 
     def __post_init__(self) -> None:
         n = self.series_term_count

@@ -101,7 +101,8 @@ class ChunkServer:
             self._receive_positions()
 
     def report_position(self, position: SolvePosition) -> None:
-        """Displays the progress of the first rank within a long point."""
+        """Displays the progress of the first rank within a long point: `position`, its text and completed
+        fraction."""
         self.positions[0] = position
         self.show_position(position.text, self._sum_of_done_fractions())
 

@@ -38,8 +38,8 @@ ARM_MS_PER_SQUARED_UNSTABLE_MODE = 0.08
 modes, in ms: within a factor of two for 25 arms with up to 62 unstable modes; 82 and 110 modes took 1.3 and
 2.8 times as long."""
 ARM_CODE_LOADING_SECONDS = 0.35
-"""Time in which a rank loads the compiled code of arms that are not uniform, with its first point, in s: in
-six tasks the first solve took 0.24 to 0.43 s longer than the second."""
+"""Time in which a rank loads the compiled code for arms that are not uniform, at its first point, in s: in
+six tasks the first solve of a rank took 0.24 to 0.43 s longer than the second."""
 MAX_EXTRA_MODES_OF_FOLLOWED_ARM = 9
 """Eigenvalues of an arm are followed only if its number of unstable modes exceeds the number of requested
 modes by at most this number."""
@@ -80,7 +80,7 @@ PULLED_MODES_MS_PER_SQUARED_LAYER_WAVE_NUMBER = 0.012
 the squared wave number of the layers, in ms L^2: 0.009 to 0.022 for nine rods with wave numbers from 27 to
 714, 0.004 and 0.008 for two cones."""
 MAX_RESOLVED_WAVE_NUMBER = 1000.0
-"""Wave number of layers, in 1/L, above which modes take no extra time: not even the spectrum is resolved."""
+"""Wave number, in 1/L, of a pulled rod's boundary layers, above which no mesh resolves even the spectrum."""
 TRANSIENT_GROWTH_MS = 55.0
 """Time of the transient growth of one rod, in ms: mean over 24 rods, 52 to 75 ms with 2 to 12 modes."""
 MEMORY_PER_UNKNOWN = 40_000
@@ -192,7 +192,7 @@ def spectra_cost(points: Points, mode_count: int, accuracy: float, certify: bool
 
 
 def _unstable_counts_of_arms(rods: list[Rod]) -> NDArray[np.float64]:
-    """Expected unstable modes of each rod, (rods,), at most a mesh's unknowns; 0 for uniform linear rods."""
+    """Expected unstable modes of each rod, (rods,), at most `max_unknowns`; 0 for uniform linear rods."""
     counts = [0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods]
     return np.minimum(counts, RESOLUTION_SETTINGS.max_unknowns)
 

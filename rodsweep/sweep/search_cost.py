@@ -103,7 +103,8 @@ def criticality_cost(points: Points, F_max: float, certify: bool, is_varying: bo
 
 
 MAX_SAMPLED_ROWS = 20
-"""Largest number of rows whose boxes are computed for an estimate; each takes up to 20 ms."""
+"""Largest number of rows (rods searched along F) for which an estimate counts the boxes where the search
+under pulls starts; counting takes up to 20 ms a row."""
 COVERING_MS_PER_BOX = 0.11
 """Time to search one uniform rod under pulls, divided by the number of boxes from which the covering starts,
 in ms: 0.07 to 0.15 for twelve rods with 98 to 2900 boxes."""
@@ -155,7 +156,7 @@ def _largest_searchable_pull(rod: Rod, pulls: Array) -> float:
 
 
 def _pulled_row_seconds(rod: Rod, start_pull: float) -> float:
-    """Time to search one row from the pull `start_pull` to F = 0, in s."""
+    """Time to search one rod for crossings from the pull F = `start_pull` < 0 to F = 0, in s."""
     if not rod.is_uniform_and_linear:
         # No search lasts longer, because it gives up on rods that no mesh resolves.
         return min(1e-3 * ARM_MS_PER_LARGEST_PULL * -start_pull, MAX_UNRESOLVED_SEARCH_SECONDS)

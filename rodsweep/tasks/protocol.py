@@ -42,9 +42,9 @@ class WorkItems(ItemChooser, Protocol):
 
 @dataclass(frozen=True, slots=True)
 class SweepWideResult:
-    """Variables that depend on all points, for the result file. changed_points: new values of all variables,
-    by name, of the points that have changed since they were solved, by flat index. messages: message for the
-    user on each of these points, by flat index."""
+    """Variables that depend on all points, for the result file. changed_points: for each point that has
+    changed since it was solved, by flat index, the new values of its variables, by name. messages: message
+    for the user on each of these points, by flat index."""
 
     sweep_wide_variables: Sequence[FilledVariable]
     changed_points: Mapping[int, NamedArrays] = field(default_factory=dict)
@@ -107,10 +107,11 @@ class Solver:
     def with_wrapper(
         self, solve_wrapper: SolveWrapper, solve_group: GroupSolveFunction | None = None, **changed: Any
     ) -> "Solver":
-        """A copy of the solver with the solve of every point wrapped by `solve_wrapper`, and with the fields
-        in `changed`.
+        """A copy of the solver in which `solve_wrapper` is called for every point, alone or in a chain, and
+        calls the original solve.
 
-        solve_group: new function that solves a group, if the solver has groups.
+        solve_group: new function that solves a group, if the solver has groups. changed: new values of other
+        fields, by name.
         """
         chained = self.sweep_chains
         grouped = self.groups_and_group_solver
@@ -155,8 +156,8 @@ class Task(ABC):
         return None
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """Coordinates, (extent,), of the dimensions other than the points, by name of the dimension. By
-        default empty."""
+        """Coordinate values, (length of the dimension,), of each dimension of the file that is not a
+        dimension of the points, by name of the dimension. By default empty."""
         return {}
 
     def variables_from_config(self, in_order: MapInOrder = map_on_one_rank) -> tuple[FilledVariable, ...]:

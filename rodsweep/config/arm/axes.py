@@ -22,8 +22,8 @@ PARAMETER_CHANGED_ALONG = SINGLE_PARAMETER_OF | dict.fromkeys(LOAD_NAME_BY_RELAT
 """Name of the parameter that changes along an axis of a grid over an arm's quantities, by name of the
 axis."""
 FILE_AXIS_OF_QUANTITY = SINGLE_PARAMETER_OF | {"drag": "gamma3", "tau2": "gamma3"}
-"""Name of the parameter along whose axis a result file stores several values of a quantity or a unit of the
-arm, by name of this quantity or unit."""
+"""For each quantity or unit of the arm, by name: the rod parameter with which it varies. If the file contains
+several values of the quantity or unit, they are stored along the axis of this parameter."""
 FLUID_QUANTITIES = ("viscosity", "fluid_density", "density_difference")
 """Names of the quantities of the fluid, which change no parameter of the rod: times are proportional to the
 viscosity, and the densities are used only to test whether the model applies."""

@@ -32,7 +32,7 @@ from .value import determinant_from_propagators
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CompletenessSettings(KernelConstants):
-    """Settings for proofs of completeness, and for the points x_j at which D'/D is summed."""
+    """Settings for proofs of completeness, and for the real points x_1 < ... < x_k of the module."""
 
     eigenvalue_count_beyond_modes: int = 2
     """Number of eigenvalues requested beyond the modes to prove. With 2 additional eigenvalues, 59 of 100
@@ -41,21 +41,21 @@ class CompletenessSettings(KernelConstants):
     """Numbers k of points x_j of successive trials. Fewer points can lie closer to the hull; more points
     suffice for a wider hull."""
     max_real_point_over_largest_w: tuple[float, ...] = (1.5, 6.0)
-    """Largest x_k divided by the largest known |w|, for each of `real_point_counts`. Most proofs with a
-    larger x_k fail, because unknown and known eigenvalues then contribute almost equally."""
+    """Upper limit of the largest point x_k over the largest known |w|, for each k in `real_point_counts`.
+    With a larger x_k unknown and known eigenvalues contribute almost equally, and most proofs fail."""
     min_real_point_over_line_distance: float = 0.35
-    """Smallest x_1 divided by the distance of the line from the imaginary axis."""
+    """Lower limit of the smallest point x_1 over the distance of the line from the imaginary axis."""
     min_real_point: float = 1e-6
-    """Smallest x_1, in 1/tau2; needed if the line and the hull are close to 0."""
+    """Lower limit of the smallest point x_1, in 1/tau2; needed if the line and the hull are close to 0."""
     relative_real_point_spread: float = 1.0
-    """(x_k - x_1)/x_1."""
+    """Length (x_k - x_1)/x_1 of the interval of the points, which are equidistant."""
     real_point_shift_factor: float = 1.3
-    """Factor by which the points x_j move outwards until every term of R has a real part >= 0."""
+    """Factor by which all points x_j are multiplied until every term of the sum R has a real part >= 0."""
     hull_strip_count: int = 24
     """Number of vertical strips of the hull right of the line, each with its own bound of Re phi."""
     max_remainder_over_contribution: float = 0.7
-    """Completeness is proved if R with its rounding error, and -R, are below this fraction of the least
-    contribution of an unknown eigenvalue."""
+    """Completeness is proved if the sum R plus its rounding error, and -R, are below this fraction of the
+    smallest possible contribution of an unknown eigenvalue right of the line."""
     log_derivative_rounding_ratio: float = 10.0
     """Relative rounding error of D'/D divided by the relative rounding error of D. Measured: at most 0.08
     between two sets of elements, over 45 random arms."""
@@ -74,8 +74,8 @@ COMPLETENESS_SETTINGS = CompletenessSettings()
 
 
 class Remainder(NamedTuple):
-    """The sum R of phi over all unknown eigenvalues (see the module), and its rounding error.
-    min_unknown_contribution: lower bound of the contribution of an unknown eigenvalue right of the line."""
+    """The sum R of the module over all unknown eigenvalues, and its rounding error. min_unknown_contribution:
+    lower bound of the contribution of an unknown eigenvalue right of the vertical line."""
 
     phi_sum: float
     rounding_error: float
@@ -150,14 +150,14 @@ def requirements_of_cheapest_proof(
 
 
 def _last_proof_point(points: Array) -> float:
-    """The last of the points x_j of a proof, (k,); inf if `points` is empty."""
+    """The largest of the real points x_j, (k,), at which a proof evaluates D'/D; inf if there are none."""
     return float(points[-1]) if len(points) else math.inf
 
 
 @compiled
 def proves_completeness(remainder: Remainder) -> bool:
-    """Whether R excludes an unknown eigenvalue right of the line. False also if R is far below 0: some known
-    eigenvalue is then not a root of D."""
+    """Whether the sum R is too small for an unknown eigenvalue right of the line. False also if R is far
+    below 0: some known eigenvalue is then not a root of D."""
     max_remainder = COMPLETENESS_SETTINGS.max_remainder_over_contribution * remainder.min_unknown_contribution
     return remainder.phi_sum + remainder.rounding_error < max_remainder and -max_remainder < remainder.phi_sum
 
@@ -179,7 +179,7 @@ def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
 
 @compiled
 def _max_argument_sum(points: Array, a: float, c: float) -> float:
-    """Upper bound of sum_j arg(x_j - v) over v in the hull (a, c); inf if a point x_j may lie in the hull."""
+    """Upper bound of sum_j arg(x_j - v), v in a hull (constants a, c); inf if a point x_j may lie in it."""
     b = 1 - c
     total = 0.0
     for x in points:
@@ -228,7 +228,7 @@ def sum_over_unknown_eigenvalues(
 
 @compiled
 def _min_contribution_right_of(line: float, points: Array, a: float, c: float) -> float:
-    """Lower bound, in the hull (a, c) right of the line, of Re phi at real w and of 2 Re phi at complex w."""
+    """Lower bound of Re phi(w), w real, and 2 Re phi(w), w complex, right of the line in a hull (a, c)."""
     b = 1 - c
     rightmost = max(a * a / (4 * b), line)
     lower_bound = 1.0

@@ -92,7 +92,7 @@ class ArmAlongPath:
 
     def eigenvalue_with_slope_and_error(self, guess: complex, p: float) -> tuple[complex, complex, float]:
         """Returns (w, dw/dp, absolute error of w) of the eigenvalue w near `guess`, for the arm at p: from
-        the family that contains p if the result is accurate, else from the arm itself."""
+        the family of arms around p (propagators interpolated in p) if accurate, else from the arm itself."""
         family = self.family_at(p)
         # The family is valid for |w| <= W; Newton's iterates from |guess| < W/2 stay in this disc.
         if family is not None and abs(guess) < family.largest_w / 2:
@@ -242,7 +242,7 @@ class ArmAlongPath:
         return None
 
     def _is_valid_at(self, p: float) -> bool:
-        """Whether the arm at p is valid."""
+        """Whether the arm at p exists: it is not crushed, and its parameters are in their ranges."""
         try:
             self.path.rod_at(p)
         except ValueError:

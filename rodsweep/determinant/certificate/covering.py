@@ -48,11 +48,11 @@ class BoxProofSettings(KernelConstants):
     max_boxes: int = 1_000_000
     """After this number of examined boxes, further undecided boxes are left open, not divided."""
     max_known_zero_distance_in_half_widths: float = 1.5
-    """Distance from the centre of a regular box, in half-widths of the box, up to which a known zero is the
-    only zero in the doubled box."""
+    """If the doubled box contains at most one zero of D (a regular box), a known zero at most this far from
+    the centre of the box, in half-widths, is that zero."""
     neighbour_zero_distance_in_half_widths: float = 0.01
-    """A zero farther than this distance beyond the edge of a regular box, in half-widths of the box, is left
-    to the neighbouring box that contains the zero."""
+    """If the zero of a regular box (at most one zero in the doubled box) lies outside the box by more than
+    this distance, in half-widths, it is counted in the neighbouring box that contains it."""
     field_ranges: ClassVar = {
         "first_half_width_over_radius": (0.0, 1.0),
         "half_width_over_radius_factor": (0.0, 1.0),

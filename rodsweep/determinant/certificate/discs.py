@@ -31,7 +31,8 @@ class DiscBoundSettings(KernelConstants):
     """sqrt(z) is expanded about the centre of a disc if the relative change x of z over the disc is below
     this number. The remainder is proportional to x^2/(1 - x)."""
     max_relative_P_factor_change: float = 0.98
-    """If either factor of P^2 changes over a disc by more than this fraction, the bound is inf."""
+    """If either factor of P^2 = w (g nu + c2 gamma3 w) changes over a disc by more than this fraction, the
+    bound is inf."""
     field_ranges: ClassVar = {
         "max_D_change_ratio": (0.0, 1.0),
         "max_relative_z_change_for_expansion": (0.0, 1.0),

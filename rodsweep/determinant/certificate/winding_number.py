@@ -32,12 +32,14 @@ class WindingSettings(KernelConstants):
     """Settings for the contour around which the winding number of D is computed."""
 
     contour_width_factor: float = 4.0
-    """Factor on the width of the box. A wider box is cheaper: far from eigenvalues one exponential dominates
-    D."""
+    """Width of the box around which the contour runs, divided by the width of `box_of_all_eigenvalues`. A
+    wider box is cheaper: far from eigenvalues one exponential dominates D."""
     additional_contour_width: float = 50.0
-    """Length added to the width of the box, in 1/tau2, because a wider box is cheaper to walk around."""
+    """Length added to the width of the box around which the contour runs, in 1/tau2, because a contour
+    farther from the eigenvalues takes fewer steps."""
     min_contour_height_over_line_distance: float = 0.5
-    """Smallest height of the box divided by the distance of the line from the imaginary axis."""
+    """Smallest height of the box around which the contour runs, divided by the distance of the vertical line,
+    its left side, from the imaginary axis."""
     integer_tolerance: float = 1e-3
     """The count fails if the computed winding number differs from the nearest integer by more than this."""
     dominance_retry_distance_over_w: float = 0.25
@@ -164,9 +166,10 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
 def contour_phase_change(
     line: float, start_height: float, corner: complex, coefficients: Coefficients
 ) -> tuple[float, int]:
-    """Returns (change of arg D along the upper half of the box, number of nodes and discs). The contour goes
-    from the real axis up to `corner`, left to Re w = line, and down to the height `start_height`. The number
-    is negative, and the returned change meaningless, if the change could not be proved."""
+    """Returns (change of arg D along the upper half of the boundary of a box, number of nodes and discs). The
+    contour goes from the real axis up to `corner`, left to Re w = line, and down to the height
+    `start_height`. The number is negative, and the returned change meaningless, if the change could not be
+    proved."""
     top = complex(line, corner.imag)
     right_change, node_count = phase_change(complex(corner.real, 0.0), corner, coefficients)
     if node_count < 0:

@@ -16,21 +16,24 @@ class ResolutionSettings:
     reference_digits: int = 4
     """The order is order_intercept + order_slope |q| for this number of digits of accuracy."""
     order_intercept: float = 4.0
-    """Order of a single element for `reference_digits` digits at |q| = 0."""
+    """Order of a single element for `reference_digits` digits of accuracy at the wave number |q| = 0."""
     order_slope: float = 0.49
-    """Increase of the order for `reference_digits` digits per unit of |q|."""
+    """Increase of the order per unit of the wave number |q| in 1/L, at `reference_digits` digits of
+    accuracy."""
     order_per_digit_intercept: float = 0.7
-    """Increase of the order for each further digit, at |q| = 0."""
+    """Increase of the order for each digit of accuracy beyond `reference_digits`, at the wave number |q| =
+    0."""
     order_per_digit_and_wave_number: float = 0.02
-    """Increase of the order for each further digit, per unit of |q|, in addition to
-    `order_per_digit_intercept`."""
+    """Increase of the order for each further digit of accuracy, per unit of the wave number |q| in 1/L; added
+    to `order_per_digit_intercept`."""
     wave_number_of_max_order_per_digit: float = 35.0
-    """The increase of the order for each further digit is constant for |q| larger than this."""
+    """Wave number |q|, in 1/L, beyond which the increase of the order for each further digit of accuracy is
+    constant."""
     amplified_wave_safety_factor: float = 1.4
     """Safety factor on the wave number of the most amplified wave in the estimate of the largest |q|."""
     mode_number_offset: float = 0.3
-    """Mode n of a rod without load has |q| near (n - 1/2) pi; (n - mode_number_offset) pi is an upper
-    estimate."""
+    """Mode n of a rod without load has a wave number |q| near (n - 1/2) pi, in 1/L; (n - mode_number_offset)
+    pi is used as an upper estimate."""
     accuracy_before_refinement: float = 1e-4
     """Relative accuracy of a mesh if its eigenvalues are then refined to roots of D."""
     max_wave_number_per_node: float = 2.0
@@ -100,8 +103,8 @@ def required_order(wave_number: float, accuracy: float) -> float:
 
 
 def first_excessive_element_count(max_order: int) -> int:
-    """Number of elements of the order `max_order` whose mesh has more than `RESOLUTION_SETTINGS.max_unknowns`
-    unknowns. No more elements are counted, because such a mesh is not solved."""
+    """Smallest number of elements of the order `max_order` with more than `RESOLUTION_SETTINGS.max_unknowns`
+    unknowns. It stands for all larger numbers too, because no such mesh is solved."""
     return RESOLUTION_SETTINGS.max_unknowns // (3 * max_order) + 2
 
 

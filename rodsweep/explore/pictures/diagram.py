@@ -19,8 +19,8 @@ from ..solving.diagrams import CRUSHED_UNSTABLE_COUNT, UNKNOWN_UNSTABLE_COUNT
 from . import card
 
 PIXEL_ROWS_PER_DRAWN_ROW = 2
-"""Number of rows of pixels that are drawn as one row. The number of rows is then about the height of a
-picture of the page, in pixels."""
+"""Number of computed rows of pixels for one drawn row of the grid. The grid then has about as many rows as a
+picture of the page has pixels in height."""
 MIN_LOG_TICKER_RATIO = 100
 """On a logarithmic axis whose ends have a smaller ratio, Bokeh's ticker places ticks at equal distances, and
 none in the lower part."""

@@ -57,8 +57,8 @@ CRITICALITY_CLASSES = (
 """(legend entry, colour) of the classes of rods on a map, by the criticality of the Hopf points. Colour-blind
 readers can distinguish the colours, also in grey prints."""
 LINEAR_RANGE_QUANTILE = 0.1
-"""Quantile of |Re c| up to which a symmetric logarithmic axis is linear, before the limit is rounded down to
-a power of ten."""
+"""A symmetric logarithmic axis of Re c is linear up to this quantile of |Re c|, rounded down to a power of
+ten."""
 
 
 def draw_criticality(request: FigureRequest) -> str:

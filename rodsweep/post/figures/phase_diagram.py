@@ -31,8 +31,8 @@ from .stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_
 from .stability.row_classes import classes_between_crossings, pixel_classes_of_row
 
 CURVE_END_CRUSHING_RATIO = 1 - 3e-3
-"""Curves of a file may end at this ratio of force to crushing force. The part of the diagram with larger
-ratios therefore bounds regions as curves do."""
+"""Curves of a file may end shortly before the crushing force, at this ratio of force to crushing force. The
+strip with larger ratios therefore separates regions of the diagram as curves do."""
 
 
 def draw_phase_diagram(request: FigureRequest) -> str:

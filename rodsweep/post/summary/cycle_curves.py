@@ -72,7 +72,8 @@ def cycle_curve_lines(view: ResultView, parameters: PlaneParameters) -> list[str
 
 
 def fold_curve_extremum_lines(view: ResultView, parameters: PlaneParameters) -> list[str]:
-    """Lines about the points of curves of folds of cycles at which the row parameter is extremal."""
+    """Lines about the points of curves of folds of cycles at which the row parameter (constant on a row) is
+    extremal."""
     variables = view.variables
     lines = []
     if UNLOCATED_EXTREMA_VARIABLE.name in variables:
@@ -93,7 +94,8 @@ def fold_curve_extremum_lines(view: ResultView, parameters: PlaneParameters) -> 
 
 
 def detached_branch_lines(view: ResultView, parameters: PlaneParameters) -> list[str]:
-    """Lines about the rows with cycles on detached branches, and about curves lost beyond the range."""
+    """Lines about the rows with cycles on branches to which no Hopf point of the row leads, and about curves
+    of folds whose continuation failed beyond the range of the parameter along the rows."""
     variables = view.variables
     lines = []
     if DETACHED_ROW_VARIABLE in variables:

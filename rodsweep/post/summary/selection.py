@@ -45,7 +45,8 @@ class PointSelection:
         return self.where(self.view.has_status(*statuses))
 
     def parts_by_word(self, masks: Mapping[str, np.ndarray]) -> dict[str, "PointSelection"]:
-        """The selected points in each of the masks, by word; without words to which no point belongs."""
+        """For each word, the selected points at which its mask in `masks` is true; words without such points
+        are left out. Masks have the shape of the points."""
         parts = {word: self.where(mask) for word, mask in masks.items()}
         return {word: part for word, part in parts.items() if part.count}
 
@@ -95,7 +96,8 @@ class DiagramRows(PointSelection):
     parameters: PlaneParameters
 
     def item_mask(self, condition: np.ndarray) -> np.ndarray:
-        """Mask of the items on the rows, (..., n), for which the mask `condition`, (..., n), is true."""
+        """Mask of the list items on the selected rows for which the mask `condition` is true; both (..., n),
+        n: list items of a row."""
         return condition & self.mask[..., np.newaxis]
 
     def rows_with_items(self, items: np.ndarray) -> Self:
@@ -114,8 +116,8 @@ class DiagramRows(PointSelection):
         """Number of rows with items, and ranges of both parameters of the items: "2 of 4 rows, F = 10 to 20,
         k1 = 100 to 200".
 
-        items: mask, (..., n). position, error: variables with positions along the rows, and their absolute
-        errors. bound: words before the number of rows.
+        items: mask of the n list items of each row, (..., n). position, error: names of the variables with
+        the items' positions along the rows and their absolute errors. bound: words before the number of rows.
         """
         with_items = self.rows_with_items(items)
         positions = np.broadcast_to(self.variables[position], items.shape)[items]

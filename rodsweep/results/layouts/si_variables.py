@@ -170,7 +170,7 @@ def arm_axis_names(config: Mapping[str, Any]) -> tuple[str, ...]:
 def arm_variables(parameters: ParametersSection, points: Points) -> tuple[FilledVariable, ...]:
     """(variable, values) of each quantity and unit of a config's arm; empty if the config has no arm.
 
-    For a grid over the arm's quantities the axes come first, and every parameter is included, along the grid.
+    For a grid over quantities: the axes, constant quantities, then units and parameters at every grid point.
     """
     arm = parameters.arm
     if arm is None:

@@ -51,8 +51,8 @@ class BranchCycle:
     next_step_length: float
     """Arc length of the step to the next cycle."""
     calibration: BranchErrorCalibration
-    """Errors of the mesh, measured or interpolated at this cycle, or measured at an earlier cycle; the errors
-    of this cycle are estimated from these errors."""
+    """Errors of the mesh, from which the errors of this cycle are estimated: measured or interpolated at this
+    cycle, or measured at an earlier cycle of the branch."""
     steps_since_error_measurement: int = 0
     """Number of steps since the last cycle with measured errors; 0 if the errors of this cycle are
     measured."""
@@ -156,8 +156,8 @@ def cycle_at_length(start: BranchCycle, length: float, accuracy: float) -> Branc
 def _step_of_length(start: BranchCycle, accuracy: float, length: float) -> StepResult[BranchCycle]:
     """The cycle at the arc length `length` from `start`, to a relative accuracy, with the prediction error
     and the cosine of the angle between the tangents; raises Unsolvable. On the first step of a branch, and on
-    the first step on another mesh, `target_prediction_error` replaces a prediction error of at most
-    `max_prediction_error`."""
+    the first step on another mesh, the prediction error says nothing about the next step: if allowed, it is
+    returned as `target_prediction_error`, so that the step length stays."""
     condition = start.arc_length_condition(length)
     predicted = start.predicted_on_next_mesh(length)
     # Steps are chosen by the error of the cubic, which is larger and varies less than that of the quintic.

@@ -135,8 +135,8 @@ class RangeEndPassage:
 
 @dataclass(frozen=True, slots=True)
 class BranchEnd:
-    """The end of a branch. special_point: last special point of the branch; other fields as in
-    `BranchCurve`, `range_end_passage` as `end_passage`."""
+    """The end of a branch. special_point: last special point of the branch. range_end_passage: place where
+    the branch leaves the range; None if it has another end. Other fields: see the fields of `BranchCurve`."""
 
     special_point: SpecialPoint
     is_complete: bool

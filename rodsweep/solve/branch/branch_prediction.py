@@ -1,8 +1,8 @@
 """Prediction of cycles of a branch by Hermite polynomials through earlier cycles.
 
 The polynomial through n cycles and their tangents has the degree 2 n - 1. Its variable is the arc length
-along the tangent at the last cycle. N is the number of orbit values; a change also has the parameter
-coordinate.
+along the tangent at the last cycle. N is the number of orbit values; tangents and changes have the parameter
+coordinate as component N + 1.
 """
 
 from collections.abc import Sequence
@@ -115,8 +115,9 @@ def predicted_change(tangent: Array, data: Sequence[HermiteNode], length: float)
 def parameter_change_polynomial(
     tangent: Array, data: Sequence[HermiteNode], ends: tuple[float, float]
 ) -> Polynomial:
-    """The predicted change of the parameter coordinate as a polynomial of the arc length between `ends`.
-    tangent, (N + 1,), and data: as in `predicted_change`."""
+    """The predicted change of the parameter coordinate as a polynomial of the arc length from the last cycle,
+    for arc lengths between the two `ends`. tangent: tangent at the last cycle, (N + 1,), of unit arc length.
+    data: earlier cycles."""
     degree = 1 + 2 * len(data)
     lengths = np.linspace(*ends, degree + 1)
     last_components = [

@@ -152,7 +152,8 @@ def _hopf_branch_starts(
     path: ParameterPath, crossings: ThresholdSearchResult, is_omega_always_unknown: bool, unit: float
 ) -> tuple[list[HopfBranchStart], list[str]]:
     """Returns (Hopf points `crossings` with their normal forms, messages on Hopf points whose normal form
-    failed). is_omega_always_unknown, unit: arguments of `hopf_branch_start`."""
+    failed). is_omega_always_unknown: whether the angular velocity Omega is an unknown for all cycles. unit:
+    smallest unit of the parameter coordinate in arc lengths."""
     hopfs = []
     failures = []
     for crossing in crossings.thresholds:

@@ -43,10 +43,11 @@ def passes_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:
 def end_or_shorter_step_at_mirror_image(
     start: BranchCycle, end: BranchCycle, limits: BranchLimits
 ) -> BranchCycle | BranchEnd | None:
-    """The end of a branch that reaches its mirror image between two cycles, at a Hopf point or a symmetric
-    cycle (a failure if no known Hopf point or symmetry breaking is near), or `start` with half the step, if
-    `start` is too far from this end; None if the branch does not reach its mirror image. Raises Unsolvable if
-    no shorter step is allowed."""
+    """What follows if a branch reaches its mirror image between the cycles `start` and `end`, at a Hopf point
+    (symmetric cycles) or at a symmetric cycle (asymmetric cycles): the end of the branch, or `start` with
+    half the step if `start` is too far from it. The end is a failure if no known Hopf point or symmetry
+    breaking is near. None if the branch does not reach its mirror image. Raises Unsolvable if no shorter step
+    is allowed."""
     if start.orbit.is_symmetric:
         return _end_at_hopf_or_shorter_step(start, end, limits) if passes_hopf_point(start, end) else None
     if reaches_symmetric_cycle(start, end, limits.breakings, limits.accuracy):
@@ -55,9 +56,10 @@ def end_or_shorter_step_at_mirror_image(
 
 
 def accurate_end_before_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> BranchEnd | None:
-    """The end of a branch at the end of the range between the cycles `start` and `end`, by the normal form of
-    a Hopf point behind this end; None unless the normal form is accurate there and a cycle solved at the end
-    of the range would not be."""
+    """The end of a branch that leaves the range between the cycles `start` and `end`, and shrinks to a Hopf
+    point just beyond the range. The cycle at the end of the range follows from the normal form of this Hopf
+    point. None unless the normal form is accurate at the end of the range and a cycle solved there would not
+    be."""
     index = index_of_passed_range_end(end, limits.coordinate_range)
     is_large = start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_amplitude_before_extrapolation
     if index < 0 or is_large or not start.orbit.is_symmetric:
@@ -77,9 +79,9 @@ def accurate_end_before_hopf(start: BranchCycle, end: BranchCycle, limits: Branc
 def _end_at_hopf_or_shorter_step(
     start: BranchCycle, end: BranchCycle, limits: BranchLimits
 ) -> BranchCycle | BranchEnd:
-    """The end of a branch at a Hopf point between two cycles, or at the end of the range before it (a failure
-    if no known Hopf point is near), or `start` with half the step, if `start` is too large for an
-    extrapolation. Raises Unsolvable."""
+    """The end of a branch of cycles that shrink to a Hopf point between `start` and `end`: at this Hopf
+    point, at the end of the range before it, or a failure if no known Hopf point is near. If `start` is too
+    large for an extrapolation, `start` with half the step. Raises Unsolvable."""
     half_length = arc_length_between(start, end) / 2
     shorter = (
         replace(start, next_step_length=half_length) if half_length >= ARC_STEP_CONTROL.min_length else None
@@ -125,8 +127,9 @@ def _known_hopf_end_or_shorter_step(
 
 
 def _shrinks_to_hopf_point(start: BranchCycle, hopf: HopfBranchStart, accuracy: float) -> bool:
-    """Whether the parabola through the cycle `start` ends at the Hopf point `hopf`. accuracy: relative
-    accuracy of the branch."""
+    """Whether the branch at the cycle `start`, extrapolated to zero deflection, ends at the Hopf point
+    `hopf`: parameter and period are parabolas in the deflection. accuracy: relative accuracy of the
+    branch."""
     # Near a Hopf point parameter and period are quadratic in the deflection. From d to 0 the parabola
     # p = p0 + k d^2 changes by half as much as its tangent at d.
     length = deflection_at_time_zero(start.orbit) / (2 * start.unit_tangent[0] * start.scale.deflection_unit)
@@ -141,9 +144,10 @@ def _shrinks_to_hopf_point(start: BranchCycle, hopf: HopfBranchStart, accuracy: 
 
 
 def _has_fold_before_hopf_end(start: BranchCycle, hopf: HopfBranchStart, limits: BranchLimits) -> bool:
-    """Whether a branch has a fold between the cycle `start` and the Hopf point `hopf` where it ends: the
-    parameter at `start` moves in the direction in which, by the normal form, the branch leaves the Hopf
-    point. False for a cycle of the smallest amplitude, before which no fold is sought."""
+    """Whether a branch has a fold between the cycle `start` and the Hopf point `hopf` where it ends. It has
+    one if the parameter at `start` moves to the side of the Hopf point on which, by the normal form, small
+    cycles exist, that is, away from the Hopf point. False for a cycle of the smallest amplitude, before which
+    no fold is sought."""
     return (
         not _is_smallest_to_solve(start, limits)
         and start.parameter_per_arc_length * hopf.parameter_direction > 0
@@ -158,8 +162,8 @@ def _is_smallest_to_solve(cycle: BranchCycle, limits: BranchLimits) -> bool:
 def _end_at_breaking_or_shorter_step(
     start: BranchCycle, end: BranchCycle, limits: BranchLimits
 ) -> BranchCycle | BranchEnd:
-    """The end of an asymmetric branch at a symmetry breaking (a failure if no known symmetry breaking is
-    near), or `start` with half the step, if `start` is too asymmetric. Raises Unsolvable."""
+    """The end of an asymmetric branch at a symmetry breaking between `start` and `end`; a failure if no known
+    symmetry breaking is near. If `start` is too asymmetric, `start` with half the step. Raises Unsolvable."""
     index = symmetry_breaking_index_between(start, end, limits.breakings, limits.accuracy)
     if index is None:
         return replace(start, next_step_length=arc_length_between(start, end) / 2)

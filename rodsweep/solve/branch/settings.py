@@ -18,9 +18,10 @@ class BranchStartSettings:
     divided by the largest amplitude on this branch: the parameter then changes by a fifteenth of the distance
     between both points."""
     last_cycle_amplitude_per_half_axis: float = 0.2
-    """Near two Hopf points close together, the last cycle of a branch is moved towards its Hopf point, down
-    to this fraction of half the axis of the ellipse or hyperbola of the cycles: at this amplitude the
-    parabola of one Hopf point alone misses the parameter by 4 % of the distance from the Hopf point."""
+    """The amplitudes of the cycles between two Hopf points close together form an ellipse or a hyperbola over
+    the parameter. The last cycle of a branch is moved towards its Hopf point, down to this fraction of half
+    the axis of this curve along the amplitude. There the square-root law of one Hopf point alone misses the
+    parameter by 4 % of the distance from the Hopf point."""
     amplitude_of_min_deflection_unit: float = 0.1
     """The unit of deflection of an `ArcLengthScale` is at least the deflection that a cycle of this amplitude
     (largest tip y, in L) has by linear theory."""
@@ -65,9 +66,9 @@ class BranchErrorSettings:
     by the factor sensitivity/limit. This number is a fifth above the documented limit, because a user
     estimates the sensitivity from cycles."""
     min_deflection_per_parameter_change: float = 0.1
-    """Lower limit of |d(deflection)/ds| in the parameter error at equal deflection, divided by
-    |d(parameter)/ds|, s: arc length. Without this limit the error would be infinite where the deflection is
-    stationary."""
+    """The parameter error at equal deflection is the distance of two branches divided by |d(deflection)/ds|,
+    s: arc length. The divisor is at least this number times |d(parameter)/ds|; otherwise the error would be
+    infinite where the deflection is stationary."""
     interpolation_safety_factor: float = 2.0
     """Safety factor on interpolated errors."""
     min_error_for_logarithm: float = 1e-16
@@ -78,12 +79,13 @@ class BranchErrorSettings:
     error divided by this ratio."""
     newton_tolerance_per_accuracy: float = 1e-4
     """Tolerance of Newton's method for a cycle of a branch, also on the two finer meshes of an error
-    measurement, divided by the accuracy. Near a fold or a Hopf point this tolerance, divided by the
-    derivative of the parameter with respect to arc length, is an error at equal parameter. With a ratio of
-    0.01, measured errors were mostly of this kind."""
+    measurement, divided by the accuracy. At equal parameter, a cycle within this tolerance may have an error
+    of the tolerance divided by |d(parameter)/ds|, s: arc length, which is large near a fold or a Hopf point.
+    With a ratio of 0.01, measured errors were mostly of this kind."""
     min_newton_tolerance: float = 1e-11
-    """Lower limit of the tolerance of Newton's method, unless a single cycle of the same accuracy has a
-    smaller tolerance: cycles of strongly unstable branches have larger rounding errors."""
+    """Lower limit of the tolerance of Newton's method along a branch, because cycles of strongly unstable
+    branches have larger rounding errors. The tolerance is smaller only if a cycle that is solved alone with
+    the same accuracy also has a smaller tolerance."""
     min_slope_for_equal_parameter_near_zero: float = 0.1
     """Close to the parameter coordinate 0, cycles on finer meshes are solved at an equal parameter, not at an
     equal arc length, if the modulus of the derivative of the scaled parameter coordinate with respect to arc
@@ -108,7 +110,7 @@ class BranchMeshSettings:
     """Error for which a mesh is chosen, divided by the accuracy; below 1, so that the mesh suffices for the
     next cycles too."""
     planned_error_per_accuracy_if_cheaper: float = 0.25
-    """Error, divided by the accuracy, for which a cheaper mesh is chosen that replaces a sufficient mesh: a
+    """Predicted error, divided by the accuracy, up to which a cheaper mesh may replace a sufficient mesh: a
     mesh that turns out not to suffice costs several solutions."""
     min_slope_ratio_for_interpolation: float = 0.2
     """Errors are interpolated at a cycle only if |d(parameter)/ds|, s: arc length, is at least this number
@@ -126,8 +128,8 @@ class BranchMeshSettings:
     8 steps errors that change their sign between two measured cycles exceeded their estimates, by up to 4
     times."""
     max_planned_error_growth: float = 4.0
-    """Upper limit of the expected growth of the errors up to the next measured cycle, by which a mesh is
-    chosen."""
+    """A mesh is chosen for the expected errors at the next measured cycle. The factor by which the errors
+    grow up to this cycle is taken as at most this number."""
     max_error_growth_since_measurement: float = 4.0
     """Errors are measured again if the coefficient tails predict that the errors have grown by more than this
     factor since the last measurement."""
@@ -169,10 +171,10 @@ class BranchEndSettings:
     """Tolerance of the predicted arc length to the end of the parameter range, divided by the step. Newton's
     method then solves the cycle exactly at this end."""
     normal_form_safety_factor: float = 2.0
-    """Safety factor on the effect of higher powers of the distance from a Hopf point on the deviations of its
-    normal form. The errors of the cycles that give the deviations have no factor: they are close to the true
-    errors, and the errors of 84 cycles of random rods at ends of ranges reached 0.997 times their
-    estimates."""
+    """The deviation of a Hopf point's normal form at the end of a range is extrapolated linearly from cycles
+    near the Hopf point. This is the safety factor on the part due to higher powers of the distance from the
+    Hopf point. The errors of the cycles themselves enter without a factor: the errors at the ends of ranges
+    of 84 cycles of random rods reached 0.997 times their estimates."""
     relative_parameter_error_at_range_end: float = 1e-15
     """Relative error of the parameter at an end of the range."""
     max_peak_shift_in_periods: float = 0.05

@@ -1,5 +1,5 @@
-"""Interpolation between two samples: whether the slopes exclude further exchanges of the leading eigenvalue
-between the samples."""
+"""Interpolation between two samples of the spectrum along a path: whether the slopes of the eigenvalues at
+both samples exclude that, between the samples, another eigenvalue becomes the leading one and back."""
 
 import math
 from typing import NamedTuple
@@ -35,9 +35,9 @@ def cubic_minimum_and_position(a: float, b: float, slope_a: float, slope_b: floa
 
 
 class NextSamplePosition(NamedTuple):
-    """Position of an additional sample between two samples. No sample is needed if the slopes explain the
-    values at both samples and exclude exchanges of the leading eigenvalue. may_hold_two_exchanges: whether
-    two exchanges may lie between the samples."""
+    """Position of an additional sample between two samples. No sample is needed if the slopes of the
+    eigenvalues agree with their change between the samples, and exclude that another eigenvalue becomes the
+    leading one (an exchange). may_hold_two_exchanges: whether two exchanges may lie between the samples."""
 
     interval_fraction: float
     """Position between the two samples as a fraction of their interval, from 0 to 1; 0 for no further
@@ -118,8 +118,9 @@ def two_pairs_exchange_lead(left: SpectrumSample, right: SpectrumSample) -> bool
 
 
 def has_only_double_eigenvalue(left: SpectrumSample, right: SpectrumSample) -> bool:
-    """Whether the slopes exclude further exchanges between the samples `left` and `right`, which have a
-    double eigenvalue between them. The leading eigenvalue is real at one sample, and a pair at the other."""
+    """Whether, by the slopes at the samples `left` and `right`, the double eigenvalue between them is the
+    only change of the leading eigenvalue there. The leading eigenvalue is real at one sample, and a complex
+    pair at the other."""
     squares = left.scaled_squared_difference_and_slope(), right.scaled_squared_difference_and_slope()
     if squares[0] is None or squares[1] is None:
         return False
@@ -164,8 +165,9 @@ def has_only_leader_exchange(left: SpectrumSample, right: SpectrumSample) -> boo
 
 
 def _stays_positive(left: tuple[float, float], right: tuple[float, float], distance: float) -> bool:
-    """Whether the slopes of a quantity explain its values at two samples and exclude a zero between them.
-    left, right: (value, slope) at the samples. distance: distance of the samples."""
+    """Whether a quantity is positive between two samples: its slopes agree with its change, and its cubic
+    interpolant stays above zero. left, right: (value, slope) at the samples. distance: distance of the
+    samples."""
     (a, slope_a), (b, slope_b) = left, right
     smallest_value = min(a, b)
     minimum, _ = cubic_minimum_and_position(a, b, distance * slope_a, distance * slope_b)
@@ -179,8 +181,9 @@ def _stays_positive(left: tuple[float, float], right: tuple[float, float], dista
 
 
 def _changes_sign_once(left: tuple[float, float], right: tuple[float, float], distance: float) -> bool:
-    """Whether a quantity has opposite signs at two samples and its slopes explain the change. left, right:
-    (value, slope) at the samples. distance: distance of the samples."""
+    """Whether a quantity has opposite signs at two samples, and its change agrees with the change by the
+    trapezoidal rule from its slopes. left, right: (value, slope) at the samples. distance: distance of the
+    samples."""
     change = abs(right[0] - left[0])
     return (
         left[0] * right[0] < 0

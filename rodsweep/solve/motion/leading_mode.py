@@ -10,8 +10,8 @@ from ...discretization.explicit_system import ExplicitSystem
 
 MAX_DEFLECTION_PER_TIP_DEFLECTION = 2.0
 """Upper limit of the deflection |y| along the rod, in L, of a mode scaled to a tip deflection of 1. The tip
-of an arm may be at rest in a mode: with a heavy tip, for example, at a single force. A mode scaled by its tip
-is then no small disturbance of the rod."""
+may be nearly at rest in a mode, for example in the mode of an arm with a heavy tip, near one particular
+force. Such a mode, scaled by its tip, is no small disturbance of the rod."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -79,8 +79,8 @@ def bent_state_with_tip_at(system: ExplicitSystem, x: float, y: float) -> Array:
 
 
 class _BentRod:
-    """Bending of a rod with fixed stretch and shear: position of the tip as a function of Pi. length: length
-    of the straight rod, in L."""
+    """Bending of a rod with fixed stretch and shear: position of the tip as a function of the curvatures Pi
+    at the nodes. length: length of the straight rod, in L."""
 
     def __init__(self, system: ExplicitSystem) -> None:
         self.mesh = system.mesh

@@ -16,8 +16,9 @@ from .symmetry import NO_SYMMETRY, REFLECTION
 
 
 def orbit_arrays(orbit: Orbit) -> dict[str, Array]:
-    """The orbit as arrays by name: "rod", its parameters; "build", its material, (bytes,); "symmetric";
-    "mesh", as `OrbitMesh.as_array`; "orbit", the orbit values, (N,)."""
+    """The orbit as arrays by name. "rod": values of the rod's parameters, in the order of `Rod.values`.
+    "build": its material as JSON text, in UTF-8, (bytes,). "symmetric": whether the orbit is symmetric.
+    "mesh": `OrbitMesh.as_array`. "orbit": `Orbit.values`, (N,)."""
     return {
         "rod": np.array(list(orbit.form.rod.values.values())),
         # Checkpoints hold arrays only, so a text is stored as its bytes.

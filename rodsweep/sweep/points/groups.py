@@ -53,7 +53,7 @@ class PointGroups:
 
     @property
     def line_count(self) -> int:
-        """Number of grid lines along the axis."""
+        """Number of grid lines parallel to the axis along which points are grouped."""
         return math.prod(self.shape) // self.shape[self.axis]
 
     @property

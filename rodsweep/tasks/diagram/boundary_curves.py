@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 def boundary_curves(
     plane: "ParameterPlane", view: ResultView, rows: np.ndarray
 ) -> "TracedCurves[BoundaryCurve]":
-    """Boundary curves through the crossings of all rows with a finite value. view: the file with all rows.
-    rows: parameter value of every row, (rows,).
+    """Boundary curves through the crossings of the imaginary axis that were found on the rows. view: the file
+    with all rows. rows: value of the row parameter of every row, (rows,); rows with an infinite value are
+    left out.
     """
     from ...solve.changes.diagram.boundaries import boundary_curves_through, seed_of
 

@@ -101,8 +101,9 @@ def _upper_right_corner(line: float, hull: EigenvalueHull) -> complex:
 def _phase_change(
     line: float, determinant: ArmDeterminant, hull: EigenvalueHull, known_w: Complex
 ) -> tuple[float, int]:
-    """Returns (change of arg D, with `known_w` divided out of D, along the upper half of the box; number of
-    nodes). Raises `PhaseLost` if a node's valid radius is too small, or too many nodes are needed."""
+    """Returns (change of arg D, with `known_w` divided out of D, along the upper half of the boundary of a
+    box with all eigenvalues that have Re w > line; number of nodes). Raises `PhaseLost` if the disc of a
+    node, in which the phase is known, is too small, or too many nodes are needed."""
     corner = _upper_right_corner(line, hull)
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
     # The elements for the largest |w| come first, because they serve most other w of the contour.

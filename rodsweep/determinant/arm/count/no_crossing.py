@@ -56,8 +56,8 @@ class SampledArmsOfInterval(NamedTuple):
 class LineNode(NamedTuple):
     """The node w0 of a disc, with values of the middle arm. w: w0. D: D(w0) exp(-S), S = `log_scale`.
     log_derivative: D'/D, with the eigenvalues divided out. divided_out_indices: indices of the known
-    eigenvalues that are divided out, (k,). dominant_exponent_and_slope: (Phi, dPhi/dw) if h contains the
-    dominant wave, else (0, 0)."""
+    eigenvalues that are divided out, (k,). dominant_exponent_and_slope: (Phi, dPhi/dw), Phi: exponent of the
+    dominant wave, if the function h that is divided out (see the module) contains this wave; else (0, 0)."""
 
     w: complex
     D: complex
@@ -68,8 +68,8 @@ class LineNode(NamedTuple):
 
 
 def sampled_point_indices(first_index: int, last_index: int) -> list[int]:
-    """Indices of the `NO_CROSSING_SETTINGS.arm_count` points, of the points `first_index` to `last_index`, at
-    which D is evaluated: the middle, the ends, and further points."""
+    """Indices of `NO_CROSSING_SETTINGS.arm_count` of the points `first_index` to `last_index`, at whose arms
+    D is evaluated: the middle point, both ends, and further points, in this order."""
     step_count = NO_CROSSING_SETTINGS.arm_count - 1
     further_indices = [
         first_index + (last_index - first_index) * k // step_count for k in range(1, step_count)

@@ -89,12 +89,12 @@ def propagator_polynomials(
 def fill_propagator_polynomials(
     F: Array, W: float, coefficients: Array, method: IntegrationMatrices, terms: Array
 ) -> int:
-    """Fills `terms`, the coefficients of propagators; returns the number of terms needed, or MAX_TERMS + 1 if
-    MAX_TERMS do not suffice.
+    """Fills `terms`, the coefficients of the propagators in powers of w/W; returns the number of powers
+    needed, or MAX_TERMS + 1 if MAX_TERMS do not suffice.
 
-    F: forces of n arms, (n,). coefficients: `LocalCoefficients` times the lengths of the elements, (n,
-    batches, 6, STAGES, LANES). terms: coefficients of the powers of w/W, (n, batches * LANES, MAX_TERMS,
-    PROPAGATOR_LENGTH), all 0 at first.
+    F: forces of n arms, (n,). W: bound of |w|. coefficients: `LocalCoefficients` times the lengths of the
+    elements, which form batches of LANES elements, (n, batches, 6, STAGES, LANES). terms: (n, batches *
+    LANES, MAX_TERMS, PROPAGATOR_LENGTH), all 0 at first.
     """
     count = 1
     stages, width = ARM_ELEMENT_SETTINGS.stage_count, ARM_ELEMENT_SETTINGS.lane_axis_length
@@ -129,11 +129,11 @@ def _fill_polynomials_of_batch(
     eliminations: Array,
     terms: Array,
 ) -> int:
-    """Fills `terms`, the coefficients of propagators, for one batch of elements; returns the number of terms
-    needed.
+    """Fills `terms`, the coefficients of the propagators in powers of w/W, for one batch of LANES elements;
+    returns the number of powers needed, or MAX_TERMS + 1 if MAX_TERMS do not suffice.
 
-    terms: (LANES, MAX_TERMS, PROPAGATOR_LENGTH). load: (F, W). coefficients: (6, STAGES, WIDTH).
-    eliminations: matrices of `fill_elimination_matrices`, (STAGES, 1 + STAGES, WIDTH).
+    terms: (LANES, MAX_TERMS, PROPAGATOR_LENGTH). load: (force F, bound W of |w|). coefficients: (6, STAGES,
+    WIDTH). eliminations: matrices of `fill_elimination_matrices`, (STAGES, 1 + STAGES, WIDTH).
     """
     F, W = load
     Q, weights = method

@@ -1,9 +1,10 @@
 """Hulls of an arm whose coefficients jump, from weights alpha averaged over a window of u.
 
-The identity of `rodsweep.determinant.arm.hull.hull` needs a continuous weight alpha. The best weight would be
-t = g/(nu + l) with l = f |F| sqrt(c2 c3 gamma3/gamma2), which jumps with the material. With log alpha as the
-mean of log t over [u - h, u + h], the slope of log alpha is (log t(u + h) - log t(u - h))/(2 h), and the
-remaining factor of the term with theta is a sum,
+The identity of `rodsweep.determinant.arm.hull.hull`, whose notation is used here, needs a continuous weight
+alpha(u), u: position on the arm. The best weight would be t = g/(nu + l) with l = f |F| sqrt(c2 c3
+gamma3/gamma2) and a factor f, of which several are tried; but t jumps with the material. With log alpha as
+the mean of log t over a window [u - h, u + h], the slope of log alpha is (log t(u + h) - log t(u - h))/(2 h),
+and the remaining factor of the term with theta is a sum,
 
     g - alpha nu = (g - t nu) + (t - alpha) nu.
 
@@ -38,10 +39,10 @@ class TrialWeight(NamedTuple):
 
 @compiled
 def regions_from_averaged_weights_of_arms(F: Array, u: Array, coefficients: Array) -> Array:
-    """Constants (a, c) of the region of all eigenvalues for each arm and each trial weight of
-    `regions_from_averaged_weights`, (n, trials, 2); inf for an arm without c2 > 0 and g > 0 everywhere. F:
-    forces, (n,). u: points of the arms, (points,). coefficients: `LocalCoefficients` at these points, (6, n,
-    points)."""
+    """`regions_from_averaged_weights` of n arms: constants (a, c) of a region that contains all eigenvalues
+    (`hull.hull`), for each arm and each trial weight, (n, trials, 2); inf for an arm without c2 > 0 and g > 0
+    everywhere. F: forces, (n,). u: points of the arms, (points,). coefficients: `LocalCoefficients` at these
+    points, (6, n, points)."""
     regions = np.full((len(F), AVERAGED_WEIGHT_SETTINGS.trial_region_count, 2), math.inf)
     for arm in range(len(F)):
         if (coefficients[1, arm] > 0).all() and (coefficients[5, arm] > 0).all():
@@ -54,10 +55,11 @@ def regions_from_averaged_weights_of_arms(F: Array, u: Array, coefficients: Arra
 
 @compiled
 def regions_from_averaged_weights(u: Array, coefficients: Array, F: float, only_smallest: bool) -> Array:
-    """Constants (a, c) of the region of each trial weight, (trials, 2); inf if a trial gives no bound. u:
-    points of an arm from clamp to tip, (points,), two at a jump. coefficients: `LocalCoefficients` at the
-    points, (6, points), with c2 > 0 and g > 0. F: force. only_smallest: whether a trial may end with inf as
-    soon as a reaches the smallest a so far of a region with c = 0."""
+    """Constants (a, c) of a region that contains all eigenvalues (`hull.hull`), for each trial weight,
+    (trials, 2); inf if a trial gives no bound. u: points of an arm from clamp to tip, (points,), two at a
+    jump. coefficients: `LocalCoefficients` at the points, (6, points), with c2 > 0 and g > 0. F: force.
+    only_smallest: whether a trial may end with inf as soon as a reaches the smallest a so far of a region
+    with c = 0."""
     regions = np.full((AVERAGED_WEIGHT_SETTINGS.trial_region_count, 2), math.inf)
     _, c2, c3, gamma2, gamma3, _ = coefficients
     loads = abs(F) * np.sqrt(c2 * c3 * gamma3 / gamma2)
@@ -85,8 +87,9 @@ def regions_from_averaged_weights(u: Array, coefficients: Array, F: float, only_
 
 @compiled
 def _trial_weight(points: TrialPoints, factor: float, log_t_of_arm: Array) -> TrialWeight:
-    """The `TrialWeight` of the weight t at the points of one half-width. factor: f, the factor of the load in
-    t. log_t_of_arm: log t at the points of the arm."""
+    """The weight t at `points`: the points of the arm, and the points added for one half-width h of the
+    window. factor: the factor f in t. log_t_of_arm: log t at the points of the arm, which is known
+    already."""
     u = points.u
     log_weight = np.empty(len(u))
     integral = np.zeros(len(u))
@@ -102,7 +105,8 @@ def _trial_weight(points: TrialPoints, factor: float, log_t_of_arm: Array) -> Tr
 
 @compiled_with_reordered_sums
 def _weight_before_averaging(points: TrialPoints, i: int, factor: float) -> float:
-    """The weight t = g/(nu + f l) at point number i. factor: f. l: `points.load_terms`."""
+    """The weight t = g/(nu + l) of the module at point number i. factor: f. l is f times
+    `points.load_terms`."""
     return points.coefficients[5, i] / (points.coefficients[0, i] + factor * points.load_terms[i])
 
 
@@ -110,8 +114,8 @@ def _weight_before_averaging(points: TrialPoints, i: int, factor: float) -> floa
 def _reaches_a_squared_limit_at(
     source: int, points: TrialPoints, weight: TrialWeight, trial: tuple[float, float, float, float]
 ) -> bool:
-    """Whether a^2 of both regions of a trial reaches the limit at the arm's point number `source`. Other
-    arguments: as in `_write_regions_of_trial`."""
+    """Whether a^2 of both regions of a trial weight reaches the limit of a^2 already at the point number
+    `source` of the arm. Other arguments: as in `_write_regions_of_trial`."""
     i = source
     while points.arm_point_indices[i] != source:  # added points shift the points of the arm
         i += 1
@@ -126,11 +130,12 @@ def _write_regions_of_trial(
     weight: TrialWeight,
     trial: tuple[float, float, float, float],
 ) -> int:
-    """Writes the two regions (a, c) of a trial weight into `regions`, (2, 2). In the first region (t - alpha)
-    nu is bounded by theta(0) = 0, in the second by the rotational drag. Returns the index of the arm's point
-    that limits a.
+    """Writes two regions that contain all eigenvalues, each as its constants (a, c) of `hull.hull`, from a
+    trial weight into `regions`, (2, 2). In the first region (t - alpha) nu is bounded by theta(0) = 0, in the
+    second by the rotational drag. Returns the index of the point of the arm that determines a.
 
-    trial: force F, factor f, half-width h, and the a^2 from which on both regions are left unchanged.
+    trial: (force F, factor f, half-width h of the window, limit of a^2). If a^2 of both regions reaches the
+    limit, `regions` is left unchanged.
     """
     u = points.u
     a2_clamp = 0.0

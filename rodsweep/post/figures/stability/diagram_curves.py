@@ -161,8 +161,8 @@ def mark_special_points_on_rows(axes: Axes, view: ResultView, parameters: PlaneP
 def _is_on_curve(
     view: ResultView, kind: int, parameters: PlaneParameters, points: Array
 ) -> NDArray[np.bool_]:
-    """Mask, (n,), of the special points `points`, (n, 2), that lie on a curve of the kind with the code
-    `kind`."""
+    """Mask, (n,), of the special points `points` that lie on a curve of the kind with the code `kind`.
+    points: (parameter along a row, row parameter) of each point, (n, 2)."""
     is_near = np.zeros(len(points), dtype=bool)
     if "cycle_curve_number" not in view.variables:
         return is_near

@@ -31,9 +31,10 @@ SECOND_PARAMETER_LINE_STYLES = ("-", "--", ":")
 MAX_COLOURED_LINES = 6
 """Largest number of values of the second parameter that have distinguishable colours."""
 DARKEST_SHADE = 0.0
-"""Start of the used range of the colour map."""
+"""Position in the colour map, from 0 to 1, of the first line's colour, the darkest."""
 LIGHTEST_SHADE = 0.85
-"""End of the used range of the colour map; lighter colours are invisible on white paper."""
+"""Position in the colour map, from 0 to 1, of the last line's colour; lighter colours are invisible on white
+paper."""
 MIN_RELATIVE_LINE_DISTANCE = 0.01
 """Two lines are drawn as one line if their distance, divided by the largest force, is below this number."""
 FORCE_AXIS_MARGIN_FACTOR = 1.05
@@ -136,9 +137,9 @@ def _draw_lines_of_up_to_three_values(panel: Axes, view: ResultView, x_name: str
 
 
 def _first_force_table(view: ResultView, x_name: str) -> Array:
-    """First forces of the three kinds of thresholds of a grid in which at most one parameter varies beside
-    `x_name`, (m, 3, n); NaN for a missing threshold. m, n: numbers of values of the other parameter and of
-    `x_name`."""
+    """Smallest force of each kind of threshold (onset, Hopf, restabilization) on a grid in which at most one
+    parameter varies beside `x_name`, (m, 3, n); NaN for a missing threshold. m, n: numbers of values of the
+    other parameter and of `x_name`."""
     forces = np.stack([view.variables[variable] for variable, *_ in CRITICAL_FORCE_LOOKS])
     forces = np.moveaxis(forces, 1 + list(view.parameter_values).index(x_name), -1)
     return forces.reshape(len(forces), -1, forces.shape[-1]).swapaxes(0, 1)
@@ -199,8 +200,9 @@ def _infinite_values_clause(view: ResultView, names: list[str]) -> str:
 
 
 def _first_middle_and_last_line(table: Array) -> list[int]:
-    """Indices of the first line, of a line whose mean height is half-way, and of the last line. table:
-    (lines, 3, n)."""
+    """Indices of three lines: the first, the last, and between them the line whose mean force is nearest to
+    the mean of theirs; all lines if there are fewer. table: forces, (lines, 3, n), as from
+    `_first_force_table`."""
     last = len(table) - 1
     if last < 2:
         return list(range(len(table)))

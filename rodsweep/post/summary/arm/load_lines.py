@@ -94,13 +94,14 @@ def _largest_ratio_within_arm(values: np.ndarray, arm_indices: np.ndarray) -> fl
 
 
 def compression_lines(rows: PointSelection) -> list[str]:
-    """Lines about the rows of a phase diagram: one with the loads above which compression makes the model
-    doubtful, one with the loads above which compression exceeds its limit. A line is left out if all loads of
-    the rows are smaller; for other tasks the list is empty.
+    """Lines about compression in the rows of a phase diagram (a row: all loads F of one arm): one line with
+    the loads above which compression makes the model doubtful, one with the loads above which compression
+    exceeds the limit of the model. A line is left out if no load of the rows is so large. Empty for files
+    without rows along F.
 
-    The stored validity of a row is judged at its first Hopf point, and a row has larger loads. Rubber has no
-    limit of compression, because its law includes large compression. Raises InputError if this version of
-    rodsweep does not accept the config of the file.
+    The validity that the file stores for a row belongs to the first Hopf point, but a row also contains
+    larger loads. Rubber has no limit of compression, because its law includes large compression. Raises
+    InputError if this version of rodsweep does not accept the config of the file.
     """
     view = rows.view
     if "F" in view.parameters or "F" not in view.variables or not rows.count:

@@ -65,7 +65,7 @@ def _merge(
     replacement: FileReplacement, sources: Sequence[ResultHeader], planner: FilePlanMaker
 ) -> MergeResult:
     """Replaces the output (`replacement`) by a copy of the first source with the points of all other sources
-    added. planner: as in `merge`."""
+    added. planner: function from config and points to the plan of a file."""
     layout = sources[0].layout
     plan = planner(config_from_resolved(sources[0].config), points_of_file(sources[0].path, layout))
     with replacement.writing_new_file(sources[0].path) as copy:

@@ -131,7 +131,8 @@ class BorderCondition:
         self, mesh: OrbitMesh, solved: ConvergedOrbit, tolerance: float, max_matrix_distance: float = np.inf
     ) -> ConvergedOrbit:
         """The cycle `solved` solved again on the mesh `mesh` under this condition; raises Unsolvable.
-        tolerance: relative error of the cycle. max_matrix_distance: as in `solve_cycle`."""
+        tolerance: relative error of the cycle. max_matrix_distance: largest allowed relative error of
+        multipliers and tangent."""
         orbit = mesh.interpolated_orbit(solved.orbit)
         return self.solve_cycle(orbit, tolerance, solved.workspace, max_matrix_distance)
 

@@ -16,7 +16,8 @@ class SpecialCurveEndSettings:
     max_distance_from_plane_edge: float = 1e-8
     """Points at most this far from an edge of the plane lie on the edge; each axis has length 1."""
     zero_margin_tolerance: float = 1e-10
-    """Tolerance of a margin, and of the position at which it becomes 0 (divided by the step length)."""
+    """A margin (distance of a point from a reason for the curve's end, see `END_REASON_BY_MARGIN`) is 0
+    within this tolerance; also the tolerance of the position of this zero, divided by the step length."""
     crushing_margin: float = 1e-3
     """A curve ends where the relative distance of F from the force that crushes the arm is this number."""
     step_tolerance_before_crushing: float = 1e-6

@@ -39,7 +39,8 @@ CURVE_STEP_CONTROL = StepControl(
     max_successive_length_ratio=2.0,
     max_solutions=400,
 )
-"""Step length control; a step has the three components of `ArcLengthScale` and the row coordinate, 0 to 1."""
+"""Step length control along a curve of folds or torus points. Arc length has four components: the three of
+`ArcLengthScale`, and `row_coordinate`, a position on an axis of the plane from 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,8 +80,9 @@ class SpecialCurveProblem(CurvePointSolver):
 
     def step(self, previous: Sequence[SolvedCurvePoint], length: float) -> StepResult[SolvedCurvePoint]:
         """The next point, with prediction error and cosine of the angle between the last two steps; raises
-        Unsolvable. previous: points solved so far. length: arc length; on the first step, change of the row
-        coordinate. On the first step the cosine is 1."""
+        Unsolvable. previous: points solved so far. length: arc length of the step; on the first step instead
+        the change of `row_coordinate`, a position on an axis of the plane from 0 to 1. On the first step the
+        cosine is 1."""
         if len(previous) == 1:
             last, direction = self._first_roles_and_direction(previous[0])
             start = last.orbit
@@ -120,15 +122,16 @@ class SpecialCurveProblem(CurvePointSolver):
     def _points_for_prediction(
         self, previous: Sequence[SolvedCurvePoint], length: float
     ) -> list[SolvedCurvePoint]:
-        """The last points of `previous`, with the roles of a step of the arc length `length`."""
+        """The last points of `previous`, from which the next point is predicted; the two parameters exchange
+        their roles in these points if a step of the arc length `length` needs it."""
         exchanged = self.need_exchange_beyond(previous, length)
         last_points = previous[-CURVE_IDENTITY_SETTINGS.max_extrapolation_points :]
         return [self.with_roles(point, exchanged) for point in last_points]
 
     def margins_to_curve_end(self, point: SolvedCurvePoint) -> Array:
         """Margins of a point, (7,); the curve ends where a margin becomes 0. They are: distances from the
-        four edges, 1 - `RodMaterial.force_over_crushing_force` - `crushing_margin`, smallest h1, largest tip
-        y minus `min_amplitude`."""
+        four edges, 1 - `RodMaterial.force_over_crushing_force` - `crushing_margin`, smallest stretch h1,
+        largest tip y minus `min_amplitude`."""
         # The edges belong to the plane, whichever parameter varies along the branch.
         plane_point = self.with_unexchanged_roles(point)
         x = self.axis_along_row.scaled_coordinate(plane_point.branch_parameter_value)

@@ -33,8 +33,8 @@ SpecialPointsOfRowFunction = Callable[[int, dict[str, Array]], list[RowSpecialPo
 
 @dataclass(frozen=True, slots=True)
 class RowsWithDetachedBranches(RowWorkItems):
-    """Rows that are solved again. unexplained_crossings: all points known so far at which curves
-    cross a row without a special point of its own, by index of the row."""
+    """Rows that are solved again, because a curve of folds or torus points crosses the row where no branch of
+    the row has such a point. unexplained_crossings: all such crossings known so far, by index of the row."""
 
     done_item_phrase: ClassVar[str] = (
         "row solved again with branches found from curves of folds and torus points"
@@ -55,11 +55,11 @@ DiagramStage = SpecialCurveTracer | RowsWithDetachedBranches | FoldsBeyondRange
 
 @dataclass(frozen=True, slots=True)
 class DiagramStages:
-    """The stages of a diagram. first_stage: tracer of the curves of the first stage. special_points_of_row: a
-    `SpecialPointsOfRowFunction`. axis_extended_beyond_range: axis of the parameter along the rows, as far as
-    branches are followed beyond the range; None: curves are not followed beyond the range.
-    values_of_rows_leaving_range: value of the row parameter, by index, of the rows with branches that leave
-    or enter the range."""
+    """The stages of the module, for one diagram. first_stage: traces the curves from the points of all rows.
+    special_points_of_row: a `SpecialPointsOfRowFunction`. axis_extended_beyond_range: axis of the parameter
+    along the rows, extended as far as branches are followed beyond the range; None if curves end at the
+    range. values_of_rows_leaving_range: row parameter of each row with a branch that leaves or enters the
+    range."""
 
     first_stage: SpecialCurveTracer
     special_points_of_row: SpecialPointsOfRowFunction
@@ -103,8 +103,8 @@ class DiagramStages:
     def _stage_of_folds_beyond_range(
         self, stages: Sequence[DiagramStage], results: WorkItemResults
     ) -> FoldsBeyondRange | None:
-        """The stage of the folds beyond the range, after complete `stages`; None if it was solved before, or
-        if neither a branch nor a curve leaves the range."""
+        """The stage, after complete `stages`, in which branches are followed beyond the range to their folds;
+        None if `stages` contains it already, or if neither a branch nor a curve leaves the range."""
         if self.axis_extended_beyond_range is None or any(
             isinstance(stage, FoldsBeyondRange) for stage in stages
         ):

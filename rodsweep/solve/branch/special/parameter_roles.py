@@ -27,9 +27,9 @@ class ParameterRoleSettings:
     """Settings for the choice of the parameter along the branch."""
 
     max_row_parameter_slope_to_exchange: float = 0.02
-    """The parameters exchange their roles where the relative change of the row parameter along the curve is
-    at most this number times the relative change of the parameter along a row. With larger slopes the errors
-    of the parameter along a row are smaller without the exchange."""
+    """The parameters exchange their roles where the relative change of the row parameter (constant on a row
+    of the diagram) along the curve is at most this number times the relative change of the parameter along a
+    row. With larger slopes the errors of the parameter along a row are smaller without the exchange."""
     min_coordinate_unit_per_axis_length: float = 0.01
     """Smallest unit of a parameter coordinate, divided by the length of its axis; the coordinate itself may
     be 0."""
@@ -51,7 +51,8 @@ class ParameterRoles:
     row_parameter_axis: PlaneAxis
 
     def are_exchanged_at(self, point: SolvedCurvePoint) -> bool:
-        """Whether the row parameter is the branch parameter of `point`."""
+        """Whether the roles are exchanged at `point`: the branch through the point is followed along the row
+        parameter, which is constant on a row of the diagram."""
         return point.scale.parameter_name != self.axis_along_row.parameter_name
 
     def axes_of(self, point: SolvedCurvePoint) -> tuple[PlaneAxis, PlaneAxis]:
@@ -121,7 +122,8 @@ class ParameterRoles:
 
     def need_exchange_at(self, point: SolvedCurvePoint, slope: float) -> bool:
         """Whether the parameters exchange their roles on the first step from `point`, whose branch parameter
-        is the parameter along a row. slope: `axis_slope_at` this point."""
+        is the parameter along a row. slope: derivative of the position on the axis of this parameter with
+        respect to the position on the other axis, along the curve."""
         rod = point.orbit.form.rod
         changes = (
             axis.path_variable_per_scaled_coordinate(getattr(rod, axis.parameter_name))
@@ -147,9 +149,10 @@ class ParameterRoles:
         return response * other_change / branch_change
 
     def _is_row_parameter_almost_constant(self, rod: Rod, line_change: float, row_change: float) -> bool:
-        """Whether the row parameter hardly changes in comparison with the parameter along a row. rod: rod
-        whose parameters are the units. line_change, row_change: changes of the coordinates of both
-        parameters."""
+        """Whether a step along a curve of folds changes the row parameter, relatively, much less than the
+        parameter along a row; False for other curves. rod: rod by whose parameters the changes are divided.
+        line_change, row_change: change of the coordinate of the parameter along a row, and of the row
+        parameter."""
         if self.kind != SpecialPointKind.fold:
             return False
         # Relative changes, because the two parameters may have ranges of very different size.

@@ -32,8 +32,8 @@ class SpecialPointSettings:
     whole state has the relative tolerance of the cycles. Without this growth folds at a relative distance of
     2e-6 from a generalised Hopf point had errors of 8 times their estimates."""
     test_function_rounding_error: float = 1e-11
-    """Error of the multiplier at a symmetry breaking or period doubling, and of h1 where the model ends: ten
-    times the relative tolerance of the cycles."""
+    """Error of the multiplier at a symmetry breaking or period doubling, and of the stretch h1 where the
+    model ends (h1 = 0): ten times the relative tolerance of the cycles."""
     max_secant_steps: int = 12
     """Maximum number of secant steps."""
     min_stagnant_step_ratio: float = 0.5
@@ -93,11 +93,11 @@ class SpecialPointSettings:
     """A multiplier m with |m - 1| below this number may lie on either side of the unit circle, because of
     errors. Near a fold two multipliers are close to 1."""
     max_prediction_error_without_fold: float = 1e-4
-    """If a multiplier of two successive cycles is 1 within its error, and the parameter turns back between
-    the cycles or the number of real multipliers above 1 changes by an odd number, they are taken as cycles of
-    one branch only if the prediction error of the second cycle is at most this number: a fifth of the usual
-    error, so that one halving of the step suffices. Between small cycles of two Hopf points close together,
-    errors of 8e-3 were seen."""
+    """Near a cycle with a nontrivial multiplier of 1 within its error, it is uncertain whether two successive
+    cycles lie on one branch, if between them the parameter turns back or the number of real multipliers above
+    1 changes by an odd number. They are then taken as cycles of one branch only if the prediction error of
+    the second cycle is at most this number: a fifth of the usual error, so that one halving of the step
+    suffices. Between small cycles of two Hopf points close together, errors of 8e-3 were seen."""
     max_parameter_change_if_located_twice: float = 1e-6
     """Two special points of a rod are the same point only if the relative difference of their parameters,
     minus the sum of their errors, is at most this number; a point on a curve over two parameters has an error
@@ -187,8 +187,9 @@ class RowSpecialPoint:
 def _agree_within_error(
     first: SpecialPoint | RowSpecialPoint, second: SpecialPoint | RowSpecialPoint, error: float
 ) -> bool:
-    """Whether kind, parameter and period of the special points `first` and `second` agree. error: sum of the
-    absolute errors of the two parameters."""
+    """Whether two special points have equal kinds, parameters that differ by at most `error` plus a relative
+    tolerance, and periods that agree within a relative tolerance. error: sum of the absolute errors of both
+    parameters."""
     # The largest y differs between mirror images, so it is not compared.
     excess_distance = abs(first.parameter_value - second.parameter_value) - error
     return (

@@ -163,8 +163,9 @@ def _needed_mode_count(spectrum: Spectrum) -> int:
 
 
 def interval_fraction_of_next_count(left: ArmModes, right: ArmModes) -> float:
-    """Position of the next count as a fraction of the interval of p from `left` to `right`; 0 if no count is
-    needed, because no pair can touch the imaginary axis in the interval."""
+    """Position between `left` and `right` at which the modes are to be computed and counted next, as a
+    fraction of the interval of p; 0 if this is not needed, because no pair can touch the imaginary axis in
+    the interval."""
     length = right.p - left.p
     for grows in (False, True):
         left_pairs, right_pairs = left.pairs(grows), right.pairs(grows)

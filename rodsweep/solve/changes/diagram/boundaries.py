@@ -156,9 +156,10 @@ def _distance_along_first_axis(plane: ParameterPlane, curve: BoundaryCurve, seed
 
 
 def _point_at_second_coordinate(boundary: StabilityBoundary, a: Array, b: Array, y: float) -> Array | None:
-    """The point (x, y, log |eigenvalue|) of a curve of `boundary` at the given y, between its points a and b,
-    (3,) each; None if not found. Newton's method starts from the chord. If this guess is too far from the
-    curve, secant steps along the curve follow."""
+    """The point (x, y, log |eigenvalue|) at the given y of a curve of `boundary`, between the points a and b
+    of the curve, (3,) each; None if not found. x, y: scaled coordinates of the first and second parameter.
+    Newton's method starts from the chord. If this guess is too far from the curve, secant steps along the
+    curve follow."""
     for _ in range(BOUNDARY_ASSIGNMENT_SETTINGS.max_secant_steps):
         fraction = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
         guess = a + fraction * (b - a)

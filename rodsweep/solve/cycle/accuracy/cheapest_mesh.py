@@ -15,8 +15,9 @@ from .settings import MESH_ERROR_CALIBRATION_SETTINGS
 
 
 def cheapest_mesh(calibration: MeshErrorCalibration, accuracy: float) -> OrbitMesh:
-    """The cheapest mesh with the elements and stages of a calibrated mesh, for which the convergence rates
-    predict errors within a fraction of the relative accuracy; the next finer mesh if no such mesh is allowed.
+    """The cheapest mesh that differs from the calibrated mesh only in the order of its elements and the
+    number of its time intervals, and for which the convergence rates predict errors within a fraction of the
+    relative accuracy; the next finer mesh if no such mesh is allowed.
     """
     calibrated = calibration.mesh
     limits = ORBIT_MESH_SETTINGS

@@ -95,8 +95,8 @@ class CoarserMeshes:
         self._cycles_on_finer_meshes: dict[OrbitMesh, ComparedCycle] = {}
 
     def can_predict(self, mesh: OrbitMesh) -> bool:
-        """Whether the cycle on `mesh` can be predicted: `mesh` has the elements and stages of the coarse
-        mesh, and its order and its number of time intervals are not too large."""
+        """Whether the cycle on `mesh` can be predicted: `mesh` has the element edges and the number of stages
+        of the coarse mesh, and its order and its number of time intervals are not too large."""
         is_near = (
             mesh.order <= self._max_predicted_order
             and self._time_interval_count_ratio(mesh) <= COARSER_MESH_SETTINGS.max_time_interval_count_ratio

@@ -207,7 +207,7 @@ class FactorStorage:
 
     @property
     def is_valid(self) -> bool:
-        """Whether the factors are not overwritten by those of another matrix."""
+        """Whether the factors are still in the workspace: no other matrix has been assembled there."""
         return self.workspace.has_reservation(self._reservation)
 
     @property

@@ -1,7 +1,8 @@
 """The leading eigenvalue of a rod, followed from a neighbouring rod without a mesh.
 
 Newton's method on the determinant D refines the eigenvalue of the neighbouring rod, and a count of
-eigenvalues, or for an arm a proof without a count, shows that the refined eigenvalue leads.
+eigenvalues shows that the refined eigenvalue leads; for arms that are not uniform, a proof without a count is
+tried first.
 """
 
 from collections.abc import Iterator
@@ -30,7 +31,7 @@ from .leader_in_range import ArmRange, leader_in_range
 class LeadingEigenvalue(NamedTuple):
     """The leading eigenvalue w of a rod, in 1/tau2, with Im w >= 0, and its absolute error. eigenvalues: all
     followed eigenvalues of the rod with Im w >= 0, (n,), the leading eigenvalue first. is_proved_by_count:
-    whether the proof that w leads needed a count of the eigenvalues of an arm."""
+    whether the arm is not uniform, and the proof that w leads needed a count of its eigenvalues."""
 
     w: complex
     error: float
@@ -179,7 +180,8 @@ def _is_accurate_and_real_like_neighbour(
 
 
 def _lines_for_count(w: complex) -> Iterator[float]:
-    """Real parts of two lines to the left of a leading eigenvalue w, for the count; the cheaper first."""
+    """Real parts of two vertical lines to the left of a leading eigenvalue w, for counts of the eigenvalues
+    right of a line; the line of the cheaper count first."""
     return (
         # Another eigenvalue may lie right of the far line; the near line then excludes it.
         w.real - distance * abs(w)
