@@ -79,7 +79,7 @@ class Config(StrictConfigSection):
 
     @property
     def is_uniform_and_linear(self) -> bool:
-        """Whether all rods are uniform and of linear material."""
+        """Whether all rods are uniform and of linear material; False for a list of points with tapers."""
         if self.parameters.arm is not None and not self.parameters.arm.is_uniform_and_linear:
             return False
         if "taper" in (self.parameters.columns or ()):

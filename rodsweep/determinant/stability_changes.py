@@ -56,9 +56,10 @@ def oscillation_onset_between(
     """The double real eigenvalue between the two forces `end_forces`; None if Newton's method does not find
     it.
 
-    before_w, after_w: leading eigenvalues at the first and second force, (modes,). The
-    two leading eigenvalues are real at the first force and complex at the second. ((w1 - w2)/2)^2 is almost
-    linear in F; Newton's method starts at its zero.
+    before_w, after_w: leading eigenvalues at the first and second force, (modes,). The two leading
+    eigenvalues w1, w2 are real at the first force and complex at the second. ((w1 - w2)/2)^2 is almost linear
+    in F, and Newton's method starts at the zero of the line between the two forces. rods: coefficients at F =
+    0 and their derivative by F.
     """
     low, high = end_forces
     first_w = before_w[0].item()  # Python's numbers, for speed
@@ -85,9 +86,9 @@ def stability_change_between(
     """The loss or return of stability between the two forces `end_forces`: the first crossing if stability is
     lost, the last crossing if stability returns.
 
-    before_w, after_w: leading eigenvalues at the first and second force, (modes,).
-    unstable_count: number of growing modes at the unstable force. Returns None unless the number of crossings
-    found is unstable_count/2.
+    before_w, after_w: leading eigenvalues at the first and second force, (modes,). unstable_count: number of
+    growing modes at the unstable force. rods: coefficients at F = 0 and their derivative by F. Returns None
+    unless the number of crossings found is unstable_count/2.
     """
     zeros = sorted(list_of(crossings_between(*end_forces, before_w, after_w, *rods)))
     # Each crossing makes two modes grow or decay; any other number means that one was missed or two cancel.

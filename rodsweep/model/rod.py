@@ -200,8 +200,8 @@ class Rod:
         return float(stiffnesses_and_drags_at_base(self.values)["gamma1"])
 
     def coefficient_derivative(self, parameter_name: str) -> Coefficients:
-        """Derivative of `coefficients` with respect to the coordinate of a parameter; the coefficients are
-        affine in this coordinate."""
+        """Derivative of `coefficients` with respect to the coordinate of a parameter (1/k for a stiffness k),
+        in which the coefficients are affine."""
         slopes = self._derivatives_by_coordinate(parameter_name)
         F = slopes.get("F", 0.0)
         c1 = slopes.get("k1", 0.0)
@@ -223,14 +223,14 @@ class Rod:
     def cross_section_derivatives(
         self, parameter_name: str, u: Array, sections: CrossSections | None = None
     ) -> CrossSections:
-        """Derivatives of `cross_sections_at(u)` with respect to the coordinate of a parameter; u: (points,).
-        sections: value of `cross_sections_at(u)`, if known."""
+        """Derivatives of `cross_sections_at(u)` by the coordinate (1/k for a stiffness k) of a parameter; u:
+        (points,). sections: value of `cross_sections_at(u)`, if known."""
         slopes = self._derivatives_by_coordinate(parameter_name)
         known = self.cross_sections_at(u) if sections is None else sections
         return self.material.cross_section_derivatives(known, self.F, self.taper, slopes, u)
 
     def balance_coefficient_derivative(self, parameter_name: str) -> BalanceCoefficients:
-        """Derivative of `balance_coefficients` with respect to the coordinate of a parameter."""
+        """Derivative of `balance_coefficients` by the coordinate (1/k for a stiffness k) of a parameter."""
         slopes = self._derivatives_by_coordinate(parameter_name)
         F, nu, c2, gamma3 = self.coefficient_derivative(parameter_name)
         compliance = np.array([slopes.get("k1", 0.0), c2, 0.0])
@@ -238,7 +238,7 @@ class Rod:
         return BalanceCoefficients(compliance, drag, F, axial_vector(nu, 3))
 
     def _derivatives_by_coordinate(self, parameter_name: str) -> dict[str, float]:
-        """Nonzero derivatives of force, compliances, drags and taper by the coordinate of a parameter.
+        """Nonzero derivatives of force, compliances, drags and taper by the `coordinate` of a parameter.
 
         Keys are F, k1, k2, gamma1, gamma3, taper; keys of stiffnesses contain derivatives of compliances.
         Each quantity is a product of coordinates: a derivative is the product of all other factors."""

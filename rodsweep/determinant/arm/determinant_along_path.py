@@ -219,8 +219,8 @@ class ArmAlongPath:
         step: at most `max_step`.
 
         Shorter and shorter steps are tried, at most `max_difference_step_divisions`, until all neighbouring
-        arms are valid: not crushed, no negative compliance or drag. The stencil is one-sided if no tried step
-        has valid arms on both sides and, unless p is the force, at p = 0.
+        arms are valid: not crushed, no negative compliance or drag. The stencil is one-sided where no tried
+        step has valid arms on both sides, and at p = 0 unless p is the force.
         """
         first_step = min(ROOT_NEWTON_SETTINGS.relative_jacobian_difference_step * max(abs(p), 1.0), max_step)
         # p = 0 ends the range of compliances and drags, but not of the force, which has either sign.

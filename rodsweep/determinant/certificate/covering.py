@@ -173,7 +173,8 @@ def box_outcome_and_costs(
 
 @compiled
 def exponent_changes(centre: BidiscCentre, half: tuple[float, float]) -> tuple[float, float]:
-    """Returns the changes of the exponents of D across a box (in eta, in p). half: half-widths of the box."""
+    """Changes (in eta, in p) over half-widths `half` of the exponents of D, or of log w, log P^2 if
+    larger."""
     F, nu, c2, gamma3 = centre.coefficients
     size = abs(centre.w)
     root_plus = math.sqrt(max(abs(centre.z_plus), 1.0))

@@ -103,8 +103,8 @@ def required_order(wave_number: float, accuracy: float) -> float:
 
 
 def first_excessive_element_count(max_order: int) -> int:
-    """Smallest number of elements of the order `max_order` with more than `RESOLUTION_SETTINGS.max_unknowns`
-    unknowns. It stands for all larger numbers too, because no such mesh is solved."""
+    """A number of elements of the order `max_order` with more than `RESOLUTION_SETTINGS.max_unknowns`
+    unknowns. It stands for all larger numbers, because no such mesh is solved."""
     return RESOLUTION_SETTINGS.max_unknowns // (3 * max_order) + 2
 
 

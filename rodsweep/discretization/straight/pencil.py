@@ -38,8 +38,8 @@ class PencilNormSettings(KernelConstants):
     """Settings of the norm of a pencil (weights of the unknowns), and of the normalisation of modes."""
 
     shear_weight: float = 1e-9
-    """Weight of s in the norm. Eigenvalues of nearly crushed rods lose seven digits at a weight of 1e-3, and
-    no digits below 1e-8."""
+    """Weight of the shear force s in the norm. Eigenvalues of nearly crushed rods lose seven digits at a
+    weight of 1e-3, and no digits below 1e-8."""
     min_angle_weight: float = 1e-4
     """Minimum weight of theta in the norm. The weight sqrt(gamma3) would tend to 0 for gamma3 -> 0."""
     min_relative_tip_displacement: float = 1e-10

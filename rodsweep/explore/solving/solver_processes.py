@@ -92,8 +92,8 @@ class SolverProcess:
         on_reply: ReplyCallback,
         progress: ReplyCallback = ignore_progress,
     ) -> None:
-        """Queues a request. An older request with the same key is removed from the queue, or, if it is being
-        solved, cancelled at the age `min_age_of_cancelled_solve`."""
+        """Queues a request. An older request with the same key is removed from the queue, or cancelled at the
+        age `min_age_of_cancelled_solve`. on_reply, progress: called with the reply and with messages."""
         self.waiting.pop(key, None)
         self.waiting[key] = request, on_reply, progress
         if self.current_request is None:

@@ -64,7 +64,8 @@ def draw_limit_cycle(request: FigureRequest) -> str:
 
 def _view_with_needed_variables(request: FigureRequest, name: str) -> ResultView:
     """View of the file with the variables that the figure `name` needs. If variables are missing,
-    `request.shape_solver`, if given, computes the missing variables."""
+    `request.shape_solver`, if given, computes them for at most MAX_CYCLES points: the requested points, by
+    default the first points with a cycle."""
     view = request.views[0]
     if request.shape_solver is None or view.variables.keys() >= set(NEEDED_VARIABLES.get(name, ())):
         return view
@@ -93,8 +94,9 @@ def chosen_figure_kind(request: FigureRequest) -> str:
 
 
 def _default_figure_kind(request: FigureRequest) -> str:
-    """Default kind of figure. An animation for an output file with the suffix of an animation; shapes or
-    transients for a few points; maps for many lines; else amplitudes."""
+    """Default kind of figure: animation for an output file with the suffix of an animation; amplitudes for
+    several files; shapes or transients for a few points; maps for many lines. Otherwise amplitudes for points
+    along F and for many points, shapes for a few points."""
     first_view, *other_views = request.views
     if request.output.suffix in FILM_SUFFIXES:
         return "animation"

@@ -54,7 +54,8 @@ def eigenvalue_sentence(rod: SingleRodResult) -> str:
 
 
 def threshold_sentence(rod: SingleRodResult) -> str:
-    """Sentence on the first force of each kind of threshold; empty if the count of crossings is unknown."""
+    """Sentence on the first force of each kind of threshold and on later windows of flutter, or on the
+    searched range without a threshold; empty if the count of crossings is unknown."""
     if rod.integer_value("crossing_count") is None:
         return ""
     clauses = []
@@ -92,8 +93,8 @@ def _later_flutter_clauses(rod: SingleRodResult) -> list[str]:
 
 
 def hopf_count_sentence(rod: SingleRodResult) -> str:
-    """Sentence on the numbers of supercritical, subcritical and undecided Hopf points; empty if the count is
-    unknown."""
+    """Sentence on the numbers of supercritical, subcritical and undecided Hopf points, or on the searched
+    range without a Hopf point; empty if the count is unknown."""
     hopf_count = rod.integer_value("crossing_count")
     if hopf_count is None:
         return ""

@@ -73,8 +73,8 @@ class BranchCycle:
 
     @property
     def tangent(self) -> Array:
-        """Tangent of the branch with unit arc length, (N + 1,): derivatives of orbit values and parameter
-        coordinate."""
+        """Tangent of the branch with unit arc length, (N + 1,): derivatives of the N orbit values, then of
+        the parameter coordinate."""
         return self.derivatives.tangent
 
     @property
@@ -98,8 +98,8 @@ class BranchCycle:
 
     @property
     def parameter_per_arc_length(self) -> float:
-        """Derivative of the scaled parameter coordinate with respect to arc length; changes sign at a
-        fold."""
+        """Derivative of the parameter coordinate (1/k for a stiffness k), in units of `scale`, with respect
+        to arc length; changes sign at a fold."""
         return self.derivatives.parameter_per_arc_length
 
     @cached_property

@@ -2,7 +2,7 @@
 
 The polynomial through n cycles and their tangents has the degree 2 n - 1. Its variable is the arc length
 along the tangent at the last cycle. N is the number of orbit values; tangents and changes have the parameter
-coordinate as component N + 1.
+coordinate (1/k for a stiffness k) as component N + 1.
 """
 
 from collections.abc import Sequence

@@ -1,5 +1,6 @@
 """Interpolation between two samples of the spectrum along a path: whether the slopes of the eigenvalues at
-both samples exclude that, between the samples, another eigenvalue becomes the leading one and back."""
+both samples exclude that, between the samples, the leading eigenvalue changes between real and complex (an
+exchange)."""
 
 import math
 from typing import NamedTuple
@@ -36,8 +37,9 @@ def cubic_minimum_and_position(a: float, b: float, slope_a: float, slope_b: floa
 
 class NextSamplePosition(NamedTuple):
     """Position of an additional sample between two samples. No sample is needed if the slopes of the
-    eigenvalues agree with their change between the samples, and exclude that another eigenvalue becomes the
-    leading one (an exchange). may_hold_two_exchanges: whether two exchanges may lie between the samples."""
+    eigenvalues agree with their change between the samples, and exclude that the leading eigenvalue changes
+    between real and complex (an exchange). may_hold_two_exchanges: whether two exchanges may lie between the
+    samples."""
 
     interval_fraction: float
     """Position between the two samples as a fraction of their interval, from 0 to 1; 0 for no further
@@ -80,10 +82,10 @@ def next_sample_between(left: SpectrumSample, right: SpectrumSample) -> NextSamp
 
 
 def excludes_exchange(left: SpectrumSample, right: SpectrumSample, may_hold_two_exchanges: bool) -> bool:
-    """Whether the slopes at two close samples, `left` and `right`, exclude an exchange of the leading
-    eigenvalue, although `next_sample_between` requests a sample between them. may_hold_two_exchanges: as
-    returned by that function. The leading eigenvalue must be real at both samples, or a pair at both
-    samples."""
+    """Whether the slopes at two close samples, `left` and `right`, exclude that the leading eigenvalue
+    changes between real and complex, although `next_sample_between` requests a sample between them.
+    may_hold_two_exchanges: as returned by that function. The leading eigenvalue must be real at both samples,
+    or a pair at both samples."""
     return two_pairs_exchange_lead(left, right) or (
         not may_hold_two_exchanges and next_two_stay_below_leader(left, right)
     )

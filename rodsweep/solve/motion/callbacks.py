@@ -193,8 +193,8 @@ class CallbackWorkspace:
         pop_stored_steps(self.context)
 
     def set_extrapolation_points(self, arkimex_type: str) -> None:
-        """Sets the extrapolation points of the stages for the ARKIMEX type `arkimex_type`; no points if
-        `EXTRAPOLATION_POINTS` does not contain the type."""
+        """Sets, for each stage of the ARKIMEX type `arkimex_type`, the earlier stages from which it is
+        extrapolated; none if `EXTRAPOLATION_POINTS` does not contain the type."""
         self._arrays["points"][:] = extrapolation_points_of(arkimex_type)
 
     def register_callbacks(self, ts: "PETSc.TS", matrix: "PETSc.Mat") -> None:

@@ -42,8 +42,8 @@ CONVERGED_USER = int(PETSc.TS.ConvergedReason.CONVERGED_USER)
 @compiled
 def store_step(c: Any, scratch: int, ts: int) -> int:
     """Stores time and state of `ts` as a row of the record, and returns PETSc's error code; ends the run if
-    h1 <= 0 at a node. c: context record (`CONTEXT_DTYPE`). scratch: address of scratch memory, into which
-    PETSc writes."""
+    the stretch h1 is <= 0 at a node. c: context record (`CONTEXT_DTYPE`). scratch: address of scratch memory,
+    into which PETSc writes."""
     n = c.unknowns
     outputs = integers_at(scratch, 3)
     if c.stored == c.capacity:

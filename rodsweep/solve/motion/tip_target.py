@@ -91,7 +91,8 @@ class _BentRod:
         unit = np.zeros((3, size, self.mesh.element_node_indices.size))
         unit[2] = np.eye(size)[:, self.mesh.element_node_indices]
         self.angle_matrix = shape_from_strains(system.mesh, unit, np.zeros(3))[2].T
-        """Matrix from Pi to theta, both at all nodes; at a jump of the material Pi is the mean."""
+        """Matrix from the curvatures Pi to the angles theta, both at all nodes, (nodes + 1, nodes + 1); at a
+        jump of the material Pi is the mean of both sides."""
 
     def tip_position(self, Pi: Array) -> Array:
         """Position (x, y) of the tip, (2,), for curvatures Pi at all nodes, (nodes + 1,)."""

@@ -51,8 +51,8 @@ def boundary_curves(
 def criticality_along(
     plane: "ParameterPlane", traced: "TracedCurves[BoundaryCurve]", accuracy: float
 ) -> "list[CurveCriticality]":
-    """Criticality along each curve; NaN along curves that are not Hopf curves. accuracy: relative accuracy of
-    the linear results."""
+    """Criticality along each boundary curve of `traced`; NaN along curves that are not Hopf curves. accuracy:
+    relative accuracy of the linear results."""
     from ...solve.hopf.bautin_points import CurveCriticality, curve_criticality
 
     return [

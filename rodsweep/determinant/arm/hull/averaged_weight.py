@@ -193,7 +193,7 @@ def _weight_and_squared_norms(
 def _averaged_weight_and_log_slope(
     points: TrialPoints, weight: TrialWeight, i: int, h: float
 ) -> tuple[float, float]:
-    """Returns (alpha, derivative of log alpha) at point number i. h: half-width of the window."""
+    """Returns (averaged weight alpha, d(log alpha)/du) at point number i. h: half-width of the window."""
     u = points.u
     start = interpolate_at_position(points.window_starts, i, weight.log_weight)
     end = interpolate_at_position(points.window_ends, i, weight.log_weight)

@@ -24,7 +24,7 @@ VERDICTS_BY_COMPRESSION = {
 
 def flutter_force_line(arms: PointSelection) -> list[str]:
     """Line with the range of the flutter forces at the tip, and the arms with the extreme forces; empty if
-    the load is a force, and if no arm flutters.
+    the load is a force or if no arm flutters.
 
     Of two arms with tips of different size, the larger flutter pressure may be the smaller force.
     """
@@ -38,7 +38,7 @@ def flutter_force_line(arms: PointSelection) -> list[str]:
 
 def extreme_arms_text(arms: PointSelection, loads: np.ndarray, smallest: str) -> str:
     """The arms with the smallest and with the largest of the loads, (n,), as text; empty for fewer than two
-    loads, and if both arms are described by the same text. smallest: phrase before the first arm."""
+    finite loads or if both arms have the same text. smallest: phrase before the first arm."""
     if np.isfinite(loads).sum() < 2:
         return ""
     indices = np.flatnonzero(arms.mask)

@@ -116,7 +116,8 @@ def _read_headers(paths: Sequence[Path]) -> list[ResultHeader]:
 
 
 def _has_same_fingerprint(header: ResultHeader, other: ResultHeader) -> bool:
-    """Whether two files have the same fingerprint; raises InputError if only the layouts differ."""
+    """Whether two files have the same fingerprint (digest of config and points); raises InputError if only
+    the layouts differ."""
     if header.fingerprint != other.fingerprint:
         return False
     if (header.layout.record_dtype, header.point_count) != (other.layout.record_dtype, other.point_count):

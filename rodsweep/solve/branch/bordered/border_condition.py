@@ -151,9 +151,9 @@ def require_equal_unknowns(form: StressForm, orbit: Orbit) -> None:
 
 
 def moved_orbit(orbit: Orbit, name: str, change: Array) -> Orbit:
-    """An orbit plus a change, (N + 1,), of the orbit values and of the coordinate of the parameter `name`;
-    raises Unsolvable if the new parameter value is not allowed, if Omega becomes an unknown or is eliminated
-    at this value, or if the new period is not positive."""
+    """An orbit plus a change, (N + 1,), of the orbit values and of the coordinate (1/k for a stiffness k) of
+    the parameter `name`; raises Unsolvable if the new parameter value is not allowed, if Omega becomes an
+    unknown or is eliminated at this value, or if the new period is not positive."""
     try:
         coordinate = orbit.form.rod.coordinate(name)
         new_coordinate = coordinate + float(change[-1])

@@ -2,10 +2,10 @@
 parameter.
 
 The components have the same meaning on every mesh: the deflection at t = 0, divided by about the largest
-deflection of the cycle; the logarithm of the period; the parameter coordinate, divided by its modulus, but at
-least by a fraction of the range of the branch, so that steps reach the coordinate 0. Both divisors belong to
-one cycle, for which an `ArcLengthScale` is made. At a Hopf point the deflection passes linearly through 0, so
-that arc length stays regular.
+deflection of the cycle; the logarithm of the period; the parameter coordinate (1/k for a stiffness k),
+divided by its modulus, but at least by a fraction of the range of the branch, so that steps reach the
+coordinate 0. Both divisors belong to one cycle, for which an `ArcLengthScale` is made. At a Hopf point the
+deflection passes linearly through 0, so that arc length stays regular.
 
 The deflection is the integral of (1 - s) c m3 over the rod, which is linear in the state; s is the position
 on the rod and c the bending compliance of the arm's profile. For small cycles of a rod without taper the
@@ -35,8 +35,8 @@ PARAMETER_DIRECTION = np.array([0.0, 0.0, 1.0])
 @dataclass(frozen=True, slots=True)
 class ArcLengthScale:
     """Units of arc length on a branch at one cycle. deflection_unit: unit of the deflection, in L, at least
-    `min_deflection_unit`. coordinate_unit: unit of the coordinate of the continuation parameter
-    `parameter_name`, at least `min_coordinate_unit`."""
+    `min_deflection_unit`. coordinate_unit: unit of the coordinate (1/k for a stiffness k) of the continuation
+    parameter `parameter_name`, at least `min_coordinate_unit`."""
 
     parameter_name: str
     deflection_unit: float

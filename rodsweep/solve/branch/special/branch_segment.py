@@ -113,6 +113,6 @@ class BranchSegment:
         return self._last_solved
 
     def parameter_per_arc_length(self) -> float:
-        """Derivative of the scaled parameter coordinate with respect to arc length, at the last cycle that
-        `cycle_at` solved."""
+        """Derivative of the parameter coordinate (1/k for a stiffness k), in units of the scale at `start`,
+        with respect to arc length, at the last cycle that `cycle_at` solved."""
         return float(self.last_arc_length_cycle_and_tangent[2][-1]) / self.start.scale.coordinate_unit

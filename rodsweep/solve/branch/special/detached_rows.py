@@ -215,8 +215,7 @@ class DiagramStages:
 def _rows_solved_again(
     stages: Sequence[DiagramStage], results: WorkItemResults
 ) -> dict[int, dict[str, Array]]:
-    """Variables of all rows that were solved again, by index of the row; the last result of a row is
-    taken."""
+    """Variables of all rows that were solved again, by index of the row: the last valid result."""
     variables_by_row: dict[int, dict[str, Array]] = {}
     for stage in stages:
         if isinstance(stage, RowsWithDetachedBranches):
@@ -231,7 +230,8 @@ def _rows_solved_again(
 def _rows_crossed_by_curves(
     tracer: SpecialCurveTracer, stages: Sequence[DiagramStage], results: WorkItemResults
 ) -> RowsWithDetachedBranches | None:
-    """The rows that the curves of `tracer` cross without a special point there; None if there are none."""
+    """The rows that curves of `tracer` cross without a special point there; None if no such crossing is
+    new."""
     known_crossings: dict[int, tuple[RowCrossing, ...]] = {}
     for stage in stages:
         known_crossings |= stage.unexplained_crossings if isinstance(stage, RowsWithDetachedBranches) else {}

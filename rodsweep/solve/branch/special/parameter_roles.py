@@ -31,8 +31,8 @@ class ParameterRoleSettings:
     of the diagram) along the curve is at most this number times the relative change of the parameter along a
     row. With larger slopes the errors of the parameter along a row are smaller without the exchange."""
     min_coordinate_unit_per_axis_length: float = 0.01
-    """Smallest unit of a parameter coordinate, divided by the length of its axis; the coordinate itself may
-    be 0."""
+    """Smallest unit of a parameter coordinate (1/k for a stiffness k), divided by the length of its axis in
+    this coordinate; the coordinate itself, the usual unit, may be 0."""
 
 
 PARAMETER_ROLE_SETTINGS = ParameterRoleSettings()

@@ -37,8 +37,8 @@ class SpecialPointSettings:
     max_secant_steps: int = 12
     """Maximum number of secant steps."""
     min_stagnant_step_ratio: float = 0.5
-    """A small secant step, or a small change of a test function, of more than this number times its
-    predecessor is rounding error."""
+    """If a small secant step, or a small change of a test function, is more than this number times the
+    previous one, it is rounding error."""
     max_stalled_step_per_branch_step: float = 1e-6
     """The secant method stops if its step, divided by the step of the branch, is at most this number and more
     than `min_stagnant_step_ratio` times the previous step."""
@@ -113,8 +113,8 @@ SPECIAL_POINT_SETTINGS = SpecialPointSettings()
 
 
 class SpecialPointKind(IntEnum):
-    """Kind of a special point of a branch; the result file stores the value. left_the_model: h1 = 0 at a
-    position on the rod, where the cross-section is crushed. end: end of the branch."""
+    """Kind of a special point of a branch; the result file stores the value. left_the_model: the stretch h1
+    is 0 at a position on the rod, where the cross-section is crushed. end: end of the branch."""
 
     hopf = 1
     fold = 2

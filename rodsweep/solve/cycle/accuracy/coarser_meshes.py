@@ -140,8 +140,8 @@ class CoarserMeshes:
         return self._cycles_on_finer_meshes[mesh]
 
     def _errors_of_finer_mesh(self, finer_cycle: ComparedCycle, error_ratio: Array | float) -> Array:
-        """Errors of a finer mesh, (4,), in the order of `tip_path_differences`, from the difference between
-        the cycle `finer_cycle` on this mesh and the cycle on the coarse mesh.
+        """Errors of a finer mesh, (4,), of period, largest y, other extrema and path of the tip, from the
+        difference between the cycle `finer_cycle` on this mesh and the cycle on the coarse mesh.
 
         error_ratio: errors of the coarse mesh divided by the errors of the finer mesh, for all errors or
         (4,).

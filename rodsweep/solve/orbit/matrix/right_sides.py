@@ -21,9 +21,9 @@ from .substitution import add_products
 
 
 class ParameterDerivatives(NamedTuple):
-    """Derivatives with respect to the coordinate of a parameter. rod_derivative: derivatives of the rod's tip
-    stress, compliances, drags and stretch at the nodes. mass_derivative: derivative of the diagonal of the
-    mass matrix, (n,)."""
+    """Derivatives with respect to the coordinate of a parameter (1/k for a stiffness k). rod_derivative:
+    derivatives of the rod's tip stress, compliances, drags and stretch at the nodes. mass_derivative:
+    derivative of the diagonal of the mass matrix, (n,)."""
 
     rod_derivative: NodalRodDerivative
     mass_derivative: Array
