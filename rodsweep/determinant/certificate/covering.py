@@ -173,8 +173,7 @@ def box_outcome_and_costs(
 
 @compiled
 def exponent_changes(centre: BidiscCentre, half: tuple[float, float]) -> tuple[float, float]:
-    """Changes (in eta, in p) over half-widths `half` of the exponents of D, or of log w, log P^2 if
-    larger."""
+    """Largest change (in eta, in p) of D's exponents, log w and log P^2 over the half-widths `half`."""
     F, nu, c2, gamma3 = centre.coefficients
     size = abs(centre.w)
     root_plus = math.sqrt(max(abs(centre.z_plus), 1.0))
