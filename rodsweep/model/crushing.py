@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from .material.rod_material import RodMaterial
 
 RELATIVE_MIN_TAPER_TOLERANCE = 1e-9
-"""Relative tolerance of the smallest taper at which the force does not crush the tip."""
+"""Relative tolerance of the smallest taper at which the force does not crush the rod."""
 
 
 def uncrushed_interval(

@@ -64,7 +64,7 @@ BEYOND_SHEAR_STIFFNESS_TEXT = "rods under a pull beyond the shear stiffness"
 """Kind of rods whose spectra are not estimated reliably: of 13 rods under pulls F < -k2 nu nine took 4 to 60
 times as long as estimated, one 800 times; the time grows as gamma3 decreases."""
 MAX_RESOLVED_SQUARED_WAVE_NUMBER = 1e8
-"""Squared wave number, in 1/L^2, above which a spectrum takes no extra time: no allowed mesh resolves it."""
+"""Squared wave number, in 1/L^2, beyond which a spectrum takes no longer: no allowed mesh resolves it."""
 TWO_MESHES_TIME_OVER_ROOTS_TIME = 8.0
 """Time of a spectrum by Krylov-Schur on two meshes, divided by the time by roots of D: mean over 800 rods."""
 EXTRA_TWO_MESHES_TIME_OVER_ROOTS_TIME = 0.05

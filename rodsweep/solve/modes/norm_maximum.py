@@ -26,14 +26,14 @@ class NormMaximumSettings:
     """Settings for the search for the maximum over time of |exp(L t)|, L: operator of the rod."""
 
     first_grid_ratio: float = 2**0.25
-    """Ratio of neighbouring times of the first grid."""
+    """Largest ratio of neighbouring times of the first grid."""
     max_halvings: int = 40
     """Maximum number of halvings of a time interval; after that the bound is not improved further."""
     max_open_intervals: int = 4000
     """Maximum number of intervals in which a larger norm is possible; with more intervals, the bound is not
     improved further."""
     times_per_batch: int = 128
-    """Number of times at which the propagator is evaluated in one call; limits the memory."""
+    """Largest number of times at which the propagator is evaluated in one call; limits the memory."""
     max_exponent: float = 300.0
     """Larger arguments of exp are replaced by this value, at which exp does not overflow."""
     max_regula_falsi_steps: int = 40

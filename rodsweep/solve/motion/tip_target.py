@@ -39,7 +39,7 @@ class TipTargetSettings:
     max_newton_iterations: int = 12
     """Maximum number of Newton iterations for one target."""
     target_tolerance: float = 1e-10
-    """Tolerance of Newton's method: distance of the tip from its target, in L."""
+    """Tolerance of Newton's method: larger component of the vector from the tip to its target, in L."""
     max_rotation_per_newton_step: float = 1.0
     """Newton's method fails if a step turns theta by more than this, in rad: such a step may lead to another
     shape."""

@@ -27,8 +27,9 @@ class EigenvaluePredictionSettings(KernelConstants):
     """Two real eigenvalues are extrapolated as a pair if, by their slopes, they meet within this many steps
     of the path, ahead or behind."""
     undecided_squared_difference_ratio: float = 0.25
-    """If the predicted squared half difference is below this fraction of its value at the last point, the
-    determinant D is evaluated to find whether the two eigenvalues are real or complex."""
+    """If the predicted squared half difference changes sign, or its magnitude is below this fraction of the
+    magnitude at the last point, the determinant D is evaluated to find whether the two eigenvalues are real
+    or complex."""
 
 
 EIGENVALUE_PREDICTION_SETTINGS = EigenvaluePredictionSettings()
