@@ -10,14 +10,16 @@ from .number_texts import axis_values_text
 from .selection import in_brackets
 
 TREND_ROUNDING = 1e-12
-"""Steps between neighbouring thresholds of at most this relative size are rounding errors."""
+"""Steps between neighbouring thresholds of a line are rounding errors if their ratio to the largest threshold
+of the line is at most this number."""
 UNKNOWN, RISES, FALLS, IS_CONSTANT, IS_NOT_MONOTONE = range(-1, 4)
 """Changes of a threshold along a line of rods; unknown with fewer than two known values."""
 
 
 def _trend(forces: np.ndarray) -> int:
-    """Change of the thresholds along a line of rods, (n,), NaN where unknown. Steps smaller than
-    TREND_ROUNDING times the largest threshold count as 0."""
+    """How the thresholds `forces`, (n,), change along a line of rods: UNKNOWN, RISES, FALLS, IS_CONSTANT or
+    IS_NOT_MONOTONE. NaN: unknown threshold. Steps of at most TREND_ROUNDING times the largest threshold count
+    as 0."""
     known_forces = forces[np.isfinite(forces)]
     steps = np.diff(known_forces)
     if not steps.size:

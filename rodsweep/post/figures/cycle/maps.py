@@ -149,7 +149,8 @@ def hopf_lines(points: PointGrid, view: ResultView) -> list[Array]:
 
 
 def _hopf_points(points: PointGrid, view: ResultView) -> Iterator[Array]:
-    """Yields, for each row of a map, the positions of the located Hopf points, (n,)."""
+    """Yields, for each row of a map, the values of the parameter on the x axis at the located Hopf points,
+    (n,)."""
     name, row_parameter = points.names
     stored_thresholds = StoredThresholds(view, name)
     for value, row_indices in zip(points.y, points.point_indices, strict=True):

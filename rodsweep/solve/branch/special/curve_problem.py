@@ -109,7 +109,8 @@ class SpecialCurveProblem(CurvePointSolver):
         )
 
     def _first_roles_and_direction(self, first: SolvedCurvePoint) -> tuple[SolvedCurvePoint, float]:
-        """Returns (the point `first` with the roles of the first step, sign of this step)."""
+        """Returns (the point `first` with the roles of the first step, sign of the change of `row_coordinate`
+        on this step)."""
         if self.kind != SpecialPointKind.fold:
             return first, self.first_step_sign_in_row_parameter
         slope = self.axis_slope_at(first, self.workspace)

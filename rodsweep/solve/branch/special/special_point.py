@@ -70,8 +70,7 @@ class SpecialPointSettings:
     """Smallest ratio of the number of time intervals of the next finer mesh to the number of the current
     mesh."""
     max_time_interval_count_ratio: float = 2.0
-    """Largest ratio of the number of time intervals of the next finer mesh to the number of the current mesh.
-    """
+    """Largest ratio of the number of time intervals of the next finer mesh to that of the current mesh."""
     time_order_per_stage: float = 1.5
     """Order in time assumed for the error of a special point, divided by the number of stages; the orders
     measured are larger than assumed."""

@@ -41,7 +41,7 @@ WORKSPACE_SETTINGS = WorkspaceSettings()
 
 
 FIRST_STAGE, SECOND_STAGE, INTERVAL_MAP = range(3)
-"""Numbers of the blocks of an interval for the first two stages, and for the map from its start to its end.
+"""Numbers of the blocks of an interval: for the first two stages, and for the map from its start to its end.
 """
 MIN_STAGE_COUNT = 3
 """Smallest number of stages of an interval for which the blocks of Newton's matrix are arranged."""
