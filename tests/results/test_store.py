@@ -217,6 +217,28 @@ def test_a_torn_line_of_reasons_is_dropped_and_only_it(tmp_path, lost):
     store.close()
 
 
+@pytest.mark.parametrize("byte", [0, 7, 20], ids=["number", "sign", "text"])
+@pytest.mark.parametrize("damaged", range(4), ids=["first", "middle", "end", "point"])
+def test_a_line_of_reasons_with_a_damaged_record_is_dropped_whole(tmp_path, damaged, byte):
+    """No end of a line stands as a reason, and no half of a letter ends the reading."""
+    store = ResultFileWriter(tmp_path / "a.h5", plan())
+    pages = Journal(store.journal_directory, 0, LAYOUT, store.plan.fingerprint)
+    size = LAYOUT.record_dtype.itemsize
+    first, long, last = "F=1.0: failed a", "\N{GREEK SMALL LETTER OMEGA}" * size, "F=3.0: failed b"
+    for index, line in enumerate((first, long, last)):
+        pages.append(index, record(index), [line])
+    pages.close()
+    (page,) = store.journal_directory.glob("rank-*")
+    data = bytearray(page.read_bytes())
+    # Before the long line are the first line and its point; the long line takes three records.
+    data[pages.header_size + (2 + damaged) * (size + 4) + byte] ^= 1
+    page.write_bytes(data)
+    # A line that follows the damage at once may be the end of a damaged line.
+    kept = [first, last] if damaged < 3 else [first, long]
+    assert read_failure_reasons(store.journal_directory, LAYOUT, store.plan.fingerprint) == kept
+    store.close()
+
+
 def test_damaged_record_is_dropped_and_only_it(tmp_path):
     store = ResultFileWriter(tmp_path / "a.h5", plan())
     journal(store, range(7))

@@ -199,8 +199,8 @@ def read_journals(
     """
     for path in journals_with_fingerprint(directory, fingerprint):
         for rows in _record_rows(path, layout, fingerprint):
-            valid_rows = rows[_has_valid_checksum(rows), :-CHECKSUM_BYTES]
-            records = np.ascontiguousarray(valid_rows).view(layout.record_dtype).ravel()
+            intact = np.ascontiguousarray(rows[_has_valid_checksum(rows), :-CHECKSUM_BYTES])
+            records = intact.view(layout.record_dtype).ravel()
             yield records[(records["index"] >= 0) & (records["index"] < point_count)]
 
 
@@ -209,25 +209,26 @@ def read_failure_reasons(directory: Path, layout: Layout, fingerprint: str) -> l
     return [
         line
         for path in journals_with_fingerprint(directory, fingerprint)
-        for line in _complete_text_lines(_record_rows(path, layout, fingerprint)).decode().splitlines()
+        for line in _complete_text_lines(_record_rows(path, layout, fingerprint))
     ]
 
 
-def _complete_text_lines(blocks: Iterable[np.ndarray]) -> bytes:
-    """The lines of text stored in a journal; a damaged record, and the text before it in the same line, are
-    left out. blocks: records with their checksums, as rows of bytes, (records, bytes)."""
-    lines = []
+def _complete_text_lines(blocks: Iterable[np.ndarray]) -> Iterator[str]:
+    """Yields the lines of text in a journal, without text between a damaged record, which may be part of it,
+    and the next intact point or end of a line. blocks: rows of bytes of `_record_rows`, (records, bytes)."""
     line = b""
+    is_intact = True
     for rows in blocks:
-        index = np.ascontiguousarray(rows[:, :POINT_INDEX_BYTES]).view("<i8").ravel()
-        is_text = (index == TEXT_CONTINUES) | (index == TEXT_ENDS)
-        texts = rows[is_text]
-        for row, number, is_valid in zip(texts, index[is_text], _has_valid_checksum(texts), strict=True):
-            line = line + row[POINT_INDEX_BYTES:-CHECKSUM_BYTES].tobytes().rstrip(b"\0") if is_valid else b""
-            if number == TEXT_ENDS:
-                lines.append(line)
-                line = b""
-    return b"\n".join(lines)
+        fields = [("index", "<i8"), ("text", f"S{rows.shape[1] - POINT_INDEX_BYTES - CHECKSUM_BYTES}")]
+        records = np.ascontiguousarray(rows[:, :-CHECKSUM_BYTES]).view(fields).ravel().tolist()
+        for (index, text), is_valid in zip(records, _has_valid_checksum(rows), strict=True):
+            line += text
+            if is_valid and index == TEXT_CONTINUES:
+                continue
+            if is_valid and index == TEXT_ENDS and is_intact:
+                yield line.decode()
+            line = b""
+            is_intact = is_valid
 
 
 def _record_rows(path: Path, layout: Layout, fingerprint: str) -> Iterator[np.ndarray]:
@@ -246,5 +247,4 @@ def _has_valid_checksum(rows: np.ndarray) -> np.ndarray:
     (records, bytes)."""
     sums = np.ascontiguousarray(rows[:, -CHECKSUM_BYTES:]).view("<u4").ravel()
     checksums = np.array([zlib.crc32(row[:-CHECKSUM_BYTES].data) for row in rows], dtype=np.uint32)
-    is_valid: np.ndarray = checksums == sums
-    return is_valid
+    return np.asarray(checksums == sums)
