@@ -228,8 +228,11 @@ def _orbit_near_normal_form(
 
 
 def orbit_by_normal_form(normal: NormalForm, form: StressForm) -> Orbit:
-    """The orbit that a normal form predicts for the rod in `form`, whose force is near the Hopf point."""
+    """The orbit that a normal form predicts for the rod in `form`, whose force is near the Hopf point; raises
+    Unsolvable if the normal form has no cycle at this force."""
     squared_y, frequency = normal.squared_y_and_frequency(form.rod.F)
+    if not squared_y > 0:
+        raise Unsolvable(f"no cycle is born from the Hopf point at F = {normal.F:.15g} for this force")
     return orbit_of_amplitude(normal, form, squared_y**0.5, frequency)
 
 

@@ -11,7 +11,7 @@ from rodsweep.bench.limit_cycle.swept_rods import TWO_SEGMENT_PROFILE
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle import limit_cycle
-from rodsweep.solve.cycle.hopf_start import hopf_point_below_force
+from rodsweep.solve.cycle.hopf_start import HopfPointBelowForce, hopf_point_below_force
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.second_state import SecondStableState
 from rodsweep.solve.cycle.straight_rod import (
@@ -188,6 +188,16 @@ def test_a_growth_rate_that_is_0_within_its_error_leaves_it_open(start, monkeypa
     c = ended(Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0), start=start)
     assert (c.status, c.second_state) == (CycleStatus.not_settled, SecondStableState.not_known)
     assert start == "hopf" or "so the stability of the straight rod is undecided" in c.message
+
+
+def test_at_the_force_of_a_hopf_point_no_cycle_is_born(monkeypatch):
+    """The force that Newton's method finds for the Hopf point may be that of the rod, to the last digit."""
+    monkeypatch.setattr(
+        limit_cycle, "hopf_point_below_force", lambda rod: HopfPointBelowForce(rod.F, 113.547607865)
+    )
+    c = ended(Rod(F=27.4271941267593, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0), start="hopf")
+    assert c.status == CycleStatus.not_settled
+    assert c.message.startswith("no cycle is born from the Hopf point at F = 27.4271941267593 for this force")
 
 
 @pytest.mark.parametrize(("F", "status"), [(43.0, "straight"), (44.2616704983273, "cycle"), (46.0, "cycle")])
