@@ -185,24 +185,25 @@ class _CorrectedInvariantSubspaces:
 
     @property
     def trivial_multiplier_error(self) -> float:
-        """Distance of the trivial multiplier from 1, divided by the larger of 1 and the largest modulus."""
-        return float(np.abs(self._values - 1).min()) / max(1.0, float(np.abs(self._values).max()))
+        """Distance of the trivial multiplier from 1."""
+        return float(np.abs(self._values - 1).min())
 
     def correct_ritz_values(self, orbit: Orbit, end_changes: Array) -> float:
-        """Corrects the Ritz values at the cycle `orbit`. Returns the largest change of a Ritz value, divided
-        by the larger of 1 and the largest modulus. end_changes: the `ends` that
-        `BorderedMatrix.residual_variations` returns at this cycle for the variations `increments`, (k, n)."""
+        """Corrects the Ritz values at the cycle `orbit`. Returns the largest change of a Ritz value, each
+        divided by the larger of 1 and its own modulus, because a multiplier near the unit circle decides on
+        stability, however large another multiplier is. end_changes: ends, (k, n), of
+        `BorderedMatrix.residual_variations` at this cycle for `increments`."""
         n = self._left.shape[1]
         ends = np.ascontiguousarray((self.increments[:, -2 - n : -2] + end_changes).T)
         images = orbit.symmetry.apply_inverse_to_flow(ends, orbit.form.layout)
         ritz = np.linalg.solve(self._products, self._left @ images)
         values: Complex = np.linalg.eigvals(ritz).astype(complex)
-        change = float(np.abs(values[:, None] - self._values).min(axis=1).max())
+        distances = np.abs(values[:, None] - self._values).min(axis=1)
         self._values = values
         # The image of the subspace, in the basis that the left subspace fixes.
         basis = self.increments[:, :n]
         self._next_starts = np.linalg.solve(ritz.T, images.T - ritz.T @ basis)
-        return change / max(1.0, float(np.abs(values).max()))
+        return float((distances / np.maximum(1.0, np.abs(values))).max())
 
     def apply_map_to_right_subspace(self, columns: Array) -> None:
         """Replaces the right subspace by its image under G. columns: the `columns` that
