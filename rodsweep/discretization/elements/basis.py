@@ -1,8 +1,11 @@
 """Interpolation and differentiation with Lagrange polynomials on given nodes, in barycentric form."""
 
+from functools import cache
+
 import numpy as np
 
 from ...arrays import Array
+from .quadrature import gauss_legendre_rule, gauss_lobatto_rule
 
 
 def barycentric_weights(nodes: Array) -> Array:
@@ -40,3 +43,23 @@ def differentiation_matrix(nodes: Array) -> Array:
     # rounding errors.
     np.fill_diagonal(matrix, -matrix.sum(axis=1))
     return matrix
+
+
+@cache
+def lobatto_differentiation_matrix(order: int) -> Array:
+    """The differentiation matrix of the Lobatto nodes of an element of order `order` on [-1, 1], (order + 1,
+    order + 1)."""
+    matrix = differentiation_matrix(gauss_lobatto_rule(order)[0])
+    matrix.flags.writeable = False
+    return matrix
+
+
+@cache
+def value_and_slope_at_gauss_points(order: int, point_count: int) -> tuple[Array, Array]:
+    """Returns (value matrix, slope matrix), (points, order + 1) each: matrices from values at the Lobatto
+    nodes of an element of order `order` on [-1, 1] to values and slopes at `point_count` Gauss points."""
+    nodes, _ = gauss_lobatto_rule(order)
+    value = lagrange_interpolation_matrix(nodes, gauss_legendre_rule(point_count)[0])
+    slope = value @ lobatto_differentiation_matrix(order)
+    value.flags.writeable = slope.flags.writeable = False
+    return value, slope

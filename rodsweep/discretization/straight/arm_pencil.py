@@ -16,7 +16,7 @@ from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.local_coefficients import local_coefficient_array
 from ...model.rod import Rod
-from ..elements.basis import differentiation_matrix, lagrange_interpolation_matrix
+from ..elements.basis import value_and_slope_at_gauss_points
 from ..elements.quadrature import gauss_legendre_rule, gauss_lobatto_rule
 from .arm_resolution import ArmMesh
 from .pencil import PENCIL_NORM_SETTINGS, PencilMatrices
@@ -61,10 +61,9 @@ class ArmPencil:
         self.unknown_count = mesh.unknown_count
         edges = np.array(mesh.edges)
         h = mesh.lengths
-        x, w = gauss_lobatto_rule(mesh.order)
+        _, w = gauss_lobatto_rule(mesh.order)
         xg, wg = gauss_legendre_rule(mesh.order)
-        value = lagrange_interpolation_matrix(x, xg)
-        slope = value @ differentiation_matrix(x)
+        value, slope = value_and_slope_at_gauss_points(mesh.order, mesh.order)
         gauss_points: Array = edges[:-1, None] + h[:, None] * (xg + 1) / 2
         # Gauss points of the elements, then their nodes, (elements, 2 order + 1).
         self._sample_points = np.concatenate(

@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...model.rod import Rod
+from ..elements.basis import value_and_slope_at_gauss_points
 from ..elements.elements import Elements
+from ..elements.quadrature import gauss_legendre_rule
 from .arm_pencil import ArmPencil
 from .pencil import Pencil, displacements_of_eigenvectors, shear_force, value_and_slope_matrices
 
@@ -57,6 +59,31 @@ class DenseEigenproblem:
             value @ adjoint_theta,
         ]
         return np.stack([field.T for field in columns])
+
+    def relative_curvature_rounding(self, X: Complex, points: Array) -> Array:
+        """Rms rounding error of Pi = Theta' at `points`, (points,), largest over the points and divided by
+        the largest Pi, in units of the machine epsilon, (k,). X: right eigenvectors, (unknowns, k)."""
+        _, slope = value_and_slope_matrices(self.mesh, points)
+        _, theta = self.displacements(X)
+        largest: Array = np.sqrt((slope**2 @ np.abs(theta) ** 2).max(axis=0))
+        return largest / np.abs(slope @ theta).max(axis=0)
+
+    @property
+    def bending_factor(self) -> Array:
+        """Matrix G, (nodes, nodes), from the unknowns theta to bending strains at the Gauss points, each in
+        units in which -G^T G is the block of A for theta."""
+        order = self.mesh.order
+        points, weights = gauss_legendre_rule(order)
+        _, slope = value_and_slope_at_gauss_points(order, order)
+        lengths = self.mesh.lengths
+        u: Array = np.array(self.mesh.edges)[:-1, None] + lengths[:, None] * (points + 1) / 2
+        roots = np.sqrt(weights * (2 / lengths[:, None]) / self.rod.local_coefficients(u).c3)
+        G = np.zeros((self.mesh.node_count, self.mesh.node_count + 1))
+        for e, root in enumerate(roots):
+            G[e * order : (e + 1) * order, self.mesh.node_ranges[e]] = root[:, None] * slope
+        # Column 0 is the clamp.
+        factor: Array = G[:, 1:] * self.displacement_factors[1]
+        return factor
 
     def A_with_tip_terms(self, p: float, r: float) -> Array:
         """A plus the matrix of the tip term p (a theta - b y) - r a y at u = 1, (unknowns, unknowns). p, r:

@@ -28,7 +28,11 @@ from numpy.typing import NDArray
 from ...arrays import COMPLEX_NAN, Array, Complex
 from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Rod
-from ..elements.basis import differentiation_matrix, lagrange_interpolation_matrix
+from ..elements.basis import (
+    lagrange_interpolation_matrix,
+    lobatto_differentiation_matrix,
+    value_and_slope_at_gauss_points,
+)
 from ..elements.elements import ELEMENT_SETTINGS, Elements, equal_edges
 from ..elements.quadrature import gauss_legendre_rule, gauss_lobatto_rule
 
@@ -165,26 +169,25 @@ def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
 
 def value_and_slope_matrices(mesh: Elements, points: Array) -> tuple[Array, Array]:
     """Returns (value matrix, slope matrix), (n, nodes + 1) each: matrices from values of a field at all nodes
-    to values, and to derivatives d/du, at `points`, (n,), in [0, 1]. All elements of `mesh` have the order of
-    the mesh."""
+    to values, and to derivatives d/du, at `points`, (n,), in [0, 1]; cached and read-only. All elements of
+    `mesh` have the order of the mesh."""
+    return _cached_value_and_slope_matrices(mesh, points.tobytes())
+
+
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)
+def _cached_value_and_slope_matrices(mesh: Elements, point_bytes: bytes) -> tuple[Array, Array]:
+    """The result of `value_and_slope_matrices`. point_bytes: bytes of the array of points."""
     nodes, _ = gauss_lobatto_rule(mesh.order)
-    derivative = _lobatto_differentiation_matrix(mesh.order)
+    derivative = lobatto_differentiation_matrix(mesh.order)
+    points = np.frombuffer(point_bytes)
     value = np.zeros((len(points), mesh.node_count + 1))
     slope = np.zeros_like(value)
     for e, indices, coordinates in mesh.points_by_element(points):
         element_values = lagrange_interpolation_matrix(nodes, coordinates)
         value[indices, mesh.node_ranges[e]] = element_values
         slope[indices, mesh.node_ranges[e]] = element_values @ derivative * (2 / mesh.lengths[e])
+    value.flags.writeable = slope.flags.writeable = False
     return value, slope
-
-
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _lobatto_differentiation_matrix(order: int) -> Array:
-    """The differentiation matrix of the Lobatto nodes of an element of order `order` on [-1, 1], (order + 1,
-    order + 1)."""
-    matrix = differentiation_matrix(gauss_lobatto_rule(order)[0])
-    matrix.flags.writeable = False
-    return matrix
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)
@@ -192,15 +195,13 @@ def assemble_pencil(element_count: int, order: int) -> Pencil:
     """The pencil on `element_count` equal elements of order `order`."""
     n = element_count * order
     h = 1 / element_count
-    x, w = gauss_lobatto_rule(order)
-    xg, wg = gauss_legendre_rule(order)
-    value = lagrange_interpolation_matrix(x, xg)
-    slope = value @ differentiation_matrix(x)
+    _, wg = gauss_legendre_rule(order)
+    value, slope = value_and_slope_at_gauss_points(order, order)
     mass = np.zeros(n + 1)
     blocks: list[tuple[int, NDArray[np.integer], NDArray[np.integer], NDArray[np.floating]]] = []
     for e in range(element_count):
         nodes = np.arange(e * order, (e + 1) * order + 1)
-        mass[nodes] += w * h / 2
+        mass[nodes] += gauss_lobatto_rule(order)[1] * h / 2
         is_unclamped = nodes > 0
         y = nodes[is_unclamped] - 1
         theta = n + y

@@ -14,8 +14,8 @@ import numpy as np
 from ...arrays import Array
 from ...model.adjoint_tip_conditions import tip_layer_factor
 from ...model.rod import Rod
-from ..elements.basis import differentiation_matrix, lagrange_interpolation_matrix
-from ..elements.quadrature import gauss_legendre_rule, gauss_lobatto_rule
+from ..elements.basis import value_and_slope_at_gauss_points
+from ..elements.quadrature import gauss_legendre_rule
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,11 +46,9 @@ def tip_angle_moment_ratio(rod: Rod) -> float:
     if rod.is_uniform_and_linear:
         return tip_layer_factor(rod)
     edges = _edges_with_short_tip_elements(rod)
-    x, _ = gauss_lobatto_rule(TIP_LAYER_ORDER)
     # Two points more than the order, for coefficients that vary within an element.
     points, weights = gauss_legendre_rule(TIP_LAYER_ORDER + 2)
-    value = lagrange_interpolation_matrix(x, points)
-    slope = value @ differentiation_matrix(x)
+    value, slope = value_and_slope_at_gauss_points(TIP_LAYER_ORDER, len(points))
     lengths = np.diff(edges)
     coefficients = rod.local_coefficients(edges[:-1, None] + lengths[:, None] * (points + 1) / 2)
     stiffness = 1 / coefficients.c3 * weights * (2 / lengths)[:, None]

@@ -22,6 +22,7 @@ from .null_vectors import (
     factorised_pencil,
     null_vectors,
 )
+from .stiffness_matrix import StiffnessMatrix
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,7 +70,8 @@ def mode_vectors(
     """Right and left modes of `eigenvalues` on the mesh of `pencil`, at `points` in [0, 1], (n,).
     estimates_rounding: whether to estimate rounding errors; otherwise all errors are NaN."""
     form = dense_eigenproblem(rod, pencil)
-    vectors, (tip_error, condition_rms) = _eigenvectors(form, eigenvalues, estimates_rounding)
+    matrix = StiffnessMatrix(form.A, form.bending_factor)
+    vectors, (tip_error, condition_rms) = _eigenvectors(form, matrix, eigenvalues, estimates_rounding)
     fields, pairing, condition = _evaluated_modes(form, vectors, points)
     m = len(eigenvalues)
     nan_per_mode = np.full(m, np.nan)
@@ -87,11 +89,15 @@ def mode_vectors(
     if not estimates_rounding:
         return modes
     factor = MODE_ITERATION_SETTINGS.rounding_safety_factor
+    sample_change = largest_relative_change(fields[:, m:], fields[:, :m])
+    curvature_rounding = form.relative_curvature_rounding(vectors[0, :, :m], points)
     return replace(
         modes,
-        eigenvalue_rounding=eigenvalue_rounding(form.A, form.B, *vectors[:, :, :m]),
-        mode_error=factor * (largest_relative_change(fields[:, m:], fields[:, :m]) + tip_error),
-        condition_error=factor * (condition_rms + MACHINE_EPSILON),
+        eigenvalue_rounding=np.array(
+            [eigenvalue_rounding(matrix, form.B, *vectors[:, :, i]) for i in range(m)]
+        ),
+        mode_error=factor * (sample_change + tip_error + MACHINE_EPSILON * curvature_rounding),
+        condition_error=factor * (condition_rms + MODE_ITERATION_SETTINGS.condition_sum_rounding),
     )
 
 
@@ -135,29 +141,28 @@ def nan_mode_vectors(resolution: Resolution, mode_count: int, point_count: int) 
 
 
 def _eigenvectors(
-    form: DenseEigenproblem, eigenvalues: Complex, estimates_rounding: bool
+    form: DenseEigenproblem, matrix: StiffnessMatrix, eigenvalues: Complex, estimates_rounding: bool
 ) -> tuple[Complex, Array]:
     """Returns (vectors, errors). vectors: right and left eigenvectors, (2, unknowns, modes); if
     `estimates_rounding`, followed by the same eigenvectors perturbed by rounding errors, (2, unknowns, 2
     modes) together. errors: rms relative rounding errors of the tip displacement (the larger one of right and
-    left) and of the condition number, (2, modes); NaN without the estimate."""
+    left) and of the condition number, (2, modes); NaN without the estimate. matrix: the matrix A of
+    `form`."""
     settings = MODE_ITERATION_SETTINGS
-    A = form.A
     B = form.B
     mode_count = len(eigenvalues)
     vectors = np.empty((2, len(B), mode_count * (1 + estimates_rounding)), complex)
     rms_errors = np.full((2, mode_count), np.nan)
-    squared_A = np.abs(A) ** 2
     for i, w in enumerate(eigenvalues):
         if i and w.imag < 0 and abs(w - eigenvalues[i - 1].conj()) <= settings.conjugate_tolerance * abs(w):
             vectors[:, :, i::mode_count] = vectors[:, :, i - 1 :: mode_count].conj()
             rms_errors[:, i] = rms_errors[:, i - 1]
             continue
-        pencil = factorised_pencil(A, B, complex(w))
+        pencil = factorised_pencil(matrix, B, complex(w))
         pair = null_vectors(pencil)
         vectors[:, :, i] = pair
         if estimates_rounding:
-            effects = effects_of_rounding(pencil, squared_A, pair, form.mesh.node_count - 1)
+            effects = effects_of_rounding(pencil, pair, form.mesh.node_count - 1)
             vectors[:, :, mode_count + i] = effects.vectors
             rms_errors[:, i] = effects.tip_error, effects.condition_error
     return vectors, rms_errors

@@ -34,6 +34,7 @@ from rodsweep.solve.modes.norm_maximum import NORM_MAXIMUM_SETTINGS, maximum_pro
 from rodsweep.solve.modes.null_vectors import effects_of_rounding, factorised_pencil, null_vectors
 from rodsweep.solve.modes.numerical_abscissa import numerical_abscissa_and_error
 from rodsweep.solve.modes.propagator import Propagator, matrix_exponential
+from rodsweep.solve.modes.stiffness_matrix import StiffnessMatrix
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 
@@ -328,7 +329,7 @@ def test_left_null_vector_of_the_pencil_has_the_adjoint_ends():
     for order in (8, 12, 16):
         pencil = assemble_pencil(1, order)
         form = dense_eigenproblem(rod, pencil)
-        _, z = null_vectors(factorised_pencil(form.A, form.B, w))
+        _, z = null_vectors(factorised_pencil(StiffnessMatrix(form.A, form.bending_factor), form.B, w))
         force = shear_force(pencil, z[:, None].astype(complex), np.linspace(0, 1, 11))
         left_over.append(abs(force[-1, 0]) / abs(force).max())
     assert left_over[0] < 1e-3
@@ -945,8 +946,13 @@ def test_growth_on_a_coarse_mesh_is_refined_until_meshes_agree():
     assert growth.numerical_abscissa == pytest.approx(exact.growth.numerical_abscissa, rel=1e-9)
 
 
+NOT_SPLIT = np.zeros((0, 0))
+"""Bending factor of a matrix that is not split."""
+
+
 def test_a_pivot_that_is_exactly_zero_gives_null_vectors():
-    x, z = null_vectors(factorised_pencil(np.diag([1.0, 2.0, 3.0]), np.ones(3), 2.0))
+    matrix = StiffnessMatrix(np.diag([1.0, 2.0, 3.0]), NOT_SPLIT)
+    x, z = null_vectors(factorised_pencil(matrix, np.ones(3), 2.0))
     assert x == pytest.approx([0, 1, 0], abs=1e-15)
     assert z == pytest.approx([0, 1, 0], abs=1e-15)
 
@@ -955,14 +961,20 @@ def test_rms_errors_by_rounding_are_those_of_random_matrices():
     """Of the tip displacement, and of the condition number, for random relative errors of 1e-9."""
     form = dense_eigenproblem(rod_of(*FIG_2A), assemble_pencil(1, 12))
     A, B, tip = form.A, form.B, form.mesh.node_count - 1
+    G, theta = form.bending_factor, slice(form.mesh.node_count, 2 * form.mesh.node_count)
+    pencil_matrix, other_terms = StiffnessMatrix(A, G), A.copy()
+    other_terms[theta, theta] = 0
     w = float(ClosedForm(rod_of(*FIG_2A), -44.02).w.real)
-    x, z = null_vectors(factorised_pencil(A, B, w))
-    found = effects_of_rounding(factorised_pencil(A, B, w), A**2, (x, z), tip)
+    x, z = null_vectors(factorised_pencil(pencil_matrix, B, w))
+    found = effects_of_rounding(factorised_pencil(pencil_matrix, B, w), (x, z), tip)
     rng = np.random.default_rng(1)
     numbers = []
     for _ in range(200):
-        changed = A * (1 + 1e-9 * rng.standard_normal(A.shape))
-        right, left = null_vectors(factorised_pencil(changed, B, w))
+        changed, rows, columns = (
+            each * (1 + 1e-9 * rng.standard_normal(each.shape)) for each in (other_terms, G, G)
+        )
+        changed[theta, theta] = -rows.T @ columns
+        right, left = null_vectors(factorised_pencil(StiffnessMatrix(changed, NOT_SPLIT), B, w))
         tips = right[tip] / (z @ (B * right)), left[tip] / (x @ (B * left))
         norms = np.sqrt(B @ right**2) * np.sqrt(B @ left**2)
         numbers.append([*tips, norms / abs(left @ (B * right))])
