@@ -5,6 +5,7 @@ from functools import lru_cache
 from math import ceil, hypot, log, pi
 
 import numpy as np
+from numpy.polynomial.legendre import legvander
 
 from ...arrays import Array, list_of
 from ...model.dispersion import (
@@ -12,9 +13,11 @@ from ...model.dispersion import (
     most_amplified_local_waves,
     sampled_arm,
 )
+from ...model.local_coefficients import local_coefficient_array
 from ...model.material.rod_material import RodMaterial
 from ...model.rod import Rod
 from ..elements.elements import ELEMENT_SETTINGS, Elements
+from ..elements.quadrature import gauss_legendre_rule
 from ..elements.resolution import (
     RESOLUTION_SETTINGS,
     first_excessive_element_count,
@@ -35,6 +38,12 @@ class ArmResolutionSettings:
     graded_element_length_ratio: float = 3.0
     """Length of an element divided by the length of the next element, nearer to an end of the arm at which a
     wave grows."""
+    last_coefficient_count: int = 3
+    """Number of the last Legendre coefficients whose size is that of the terms omitted after them; a single
+    coefficient may be 0 by symmetry."""
+    max_unknowns_of_halved_elements: int = 1100
+    """Elements are not halved where the coefficients vary quickly if the mesh would have more unknowns; dense
+    linear algebra on a larger mesh takes seconds."""
 
 
 ARM_RESOLUTION_SETTINGS = ArmResolutionSettings()
@@ -161,6 +170,31 @@ def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
     for start, stop in zip(mesh.edges[:-1], mesh.edges[1:], strict=True):
         edges += _graded_edges(rod.taper, start, stop, 2)
     return ArmMesh(tuple(edges), ceil(RESOLUTION_SETTINGS.finer_over_current_unknowns / 2 * mesh.order))
+
+
+def halved_where_coefficients_vary(rod: Rod, mesh: ArmMesh, accuracy: float) -> ArmMesh:
+    """The mesh with elements halved until the next higher order of a refinement represents every coefficient
+    of the arm in every element to the relative `accuracy`. A strain is the product of a compliance and a
+    smooth stress, and no polynomial is closer to it than to the compliance."""
+    settings = ARM_RESOLUTION_SETTINGS
+    order = ceil(RESOLUTION_SETTINGS.finer_over_current_unknowns * mesh.order)
+    x, weights = gauss_legendre_rule(order)
+    # Row n: weights of the values at the Gauss points in Legendre coefficient n.
+    legendre_rows = (np.arange(order) + 0.5)[:, None] * (legvander(x, order - 1) * weights[:, None]).T
+    last_rows = legendre_rows[-settings.last_coefficient_count :]
+    halved_mesh = mesh
+    while halved_mesh.unknown_count <= settings.max_unknowns_of_halved_elements:
+        mesh = halved_mesh
+        edges = np.array(mesh.edges)
+        points: Array = edges[:-1, None] + mesh.lengths[:, None] * (x + 1) / 2
+        coefficients = local_coefficient_array([rod], points)[:, 0]
+        omitted = np.abs(coefficients @ last_rows.T).max(axis=2)
+        is_halved = (omitted > accuracy * np.abs(coefficients).max(axis=2)).any(axis=0)
+        if not is_halved.any():
+            break
+        middles = [_graded_edges(rod.taper, edges[e], edges[e + 1], 2)[0] for e in np.flatnonzero(is_halved)]
+        halved_mesh = ArmMesh(tuple(list_of(np.sort(np.concatenate([edges, middles])))), mesh.order)
+    return mesh
 
 
 def _relative_radius_at(taper: float, u: float) -> float:

@@ -5,12 +5,13 @@ the jumps of the material.
 """
 
 from functools import lru_cache
+from math import sqrt
 
 from ...model.rod import Rod
 from ..elements.elements import ELEMENT_SETTINGS
 from ..elements.resolution import Resolution, finer_resolution, resolution_for
 from .arm_pencil import ArmPencil
-from .arm_resolution import ArmMesh, arm_elements, finer_arm_mesh
+from .arm_resolution import ArmMesh, arm_elements, finer_arm_mesh, halved_where_coefficients_vary
 from .dense_eigenproblem import AnyPencil
 from .pencil import assemble_pencil
 
@@ -19,12 +20,12 @@ AnyMesh = Resolution | ArmMesh
 
 
 def mesh_for(rod: Rod, wave_number: float, accuracy: float) -> AnyMesh:
-    """The mesh on which a rod's fields of the wave number `wave_number`, in 1/L, have the relative
-    `accuracy`."""
+    """The mesh on which eigenvalues of a rod whose fields have the wave number `wave_number`, in 1/L, have
+    the relative `accuracy`, and the fields its square root."""
     if rod.is_uniform_and_linear:
         return resolution_for(wave_number, accuracy)
     elements = arm_elements(rod, wave_number, accuracy)
-    return ArmMesh(elements.edges, elements.order)
+    return halved_where_coefficients_vary(rod, ArmMesh(elements.edges, elements.order), sqrt(accuracy))
 
 
 def finer_mesh(rod: Rod, mesh: AnyMesh) -> AnyMesh:

@@ -1,5 +1,7 @@
 """Modes and growth of arms that vary along their length or are of rubber, against another discretisation."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from reference.dense_arm import in_energy_norm, matrices, nodes
@@ -9,7 +11,11 @@ from scipy.linalg import expm
 from surveyed import RODS, few
 
 from rodsweep.discretization.elements.quadrature import lobatto_points
-from rodsweep.discretization.straight.arm_resolution import finer_arm_mesh
+from rodsweep.discretization.straight.arm_resolution import (
+    ARM_RESOLUTION_SETTINGS,
+    arm_elements,
+    finer_arm_mesh,
+)
 from rodsweep.discretization.straight.dense_eigenproblem import dense_eigenproblem
 from rodsweep.discretization.straight.tip_layer import tip_angle_moment_ratio
 from rodsweep.discretization.straight.transverse_mesh import mesh_for, pencil_on
@@ -161,12 +167,26 @@ STIFF_MIDDLE_FIELDS = [
     (-2.9032701460540395, 0.009663574824540482, -3.3310580039775552),
     (-4.253970721191519, -1.3851578617554117, -4.67810593790922),
 ]
+NOTCHED = Rod(
+    F=0.3,
+    k1=1e4,
+    k2=1e3,
+    gamma3=1e-3,
+    material=RodMaterial(profile=k3_profile((0.0, 0.4, 0.5, 0.6, 1.0), (1, 1, 0.02, 1, 1))),
+)
+"""Elements of the order 63 that end at the rows left an error of 5e-8."""
+NOTCHED_FIELDS = [
+    (1.10206943464742, 37.322848152833224, 1.1281747212497206),
+    (0.2692902674085496, 250.89900612805258, 0.2504134842297258),
+    (-7.460181729778752, 22.456095601612297, -7.499837781704569),
+    (-0.05301068984321872, -735.5448765102024, -0.053842188700999494),
+]
 """Theta, Pi and Theta+ at u = 1/2 of four modes: Gauss collocation of order 24 of the first-order system of
 y, theta, s and m, in extended precision, on 70 elements."""
 
 
 @pytest.mark.kernel
-@pytest.mark.parametrize("rod, exact", [(STIFF_MIDDLE, STIFF_MIDDLE_FIELDS)])
+@pytest.mark.parametrize("rod, exact", [(STIFF_MIDDLE, STIFF_MIDDLE_FIELDS), (NOTCHED, NOTCHED_FIELDS)])
 def test_errors_of_modes_are_below_their_estimates_where_the_stiffness_varies(rod, exact):
     result = solve_modes(rod, ModesRequest(4, 1e-10, 65, computes_growth=False))
     assert result.status == SpectrumStatus.ok
@@ -174,6 +194,27 @@ def test_errors_of_modes_are_below_their_estimates_where_the_stiffness_varies(ro
     errors = abs(fields[:, :, 32] - np.array(exact).T) / abs(fields).max(axis=2)
     assert (errors.max(axis=0) <= result.mode_vectors.mode_error).all()
     assert result.mode_vectors.condition_error.max() < 1e-13
+
+
+def test_elements_are_halved_only_where_the_stiffness_varies_quickly():
+    edges = np.array(mesh_for(NOTCHED, 15.0, 1e-20).edges)
+    rows = {0.0, 0.4, 0.5, 0.6, 1.0}
+    assert rows < set(edges.tolist())
+    assert ((edges >= 0.4) & (edges <= 0.6) | np.isin(edges, [0.0, 1.0])).all()
+    for slow in (STIFF_MIDDLE, ARMS[0], ARMS[2]):
+        mesh = mesh_for(slow, 15.0, 1e-20)
+        assert mesh.edges == arm_elements(slow, 15.0, 1e-20).edges
+
+
+def test_elements_are_not_halved_beyond_the_largest_mesh():
+    """Where no allowed mesh resolves the stiffness, the error says so."""
+    rods = [
+        replace(NOTCHED, material=RodMaterial(profile=k3_profile((0.0, 0.48, 0.5, 0.52, 1.0), k3)))
+        for k3 in ((1, 1, 1e-3, 1, 1), (1, 1, 1e-7, 1, 1))
+    ]
+    for rod in rods:
+        mesh = mesh_for(rod, 15.0, 1e-20)
+        assert mesh.unknown_count <= ARM_RESOLUTION_SETTINGS.max_unknowns_of_halved_elements
 
 
 def test_the_bending_factor_gives_the_bending_stiffness():
