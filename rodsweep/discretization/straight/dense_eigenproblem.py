@@ -14,7 +14,8 @@ from ..elements.basis import value_and_slope_at_gauss_points
 from ..elements.elements import Elements
 from ..elements.quadrature import gauss_legendre_rule
 from .arm_pencil import ArmPencil
-from .pencil import Pencil, displacements_of_eigenvectors, shear_force, value_and_slope_matrices
+from .field_interpolation import value_and_slope_matrices
+from .pencil import Pencil, displacements_of_eigenvectors, shear_force
 
 AnyPencil = Pencil | ArmPencil
 """The pencil of a uniform rod of linear material, or of an arm."""

@@ -28,13 +28,10 @@ from numpy.typing import NDArray
 from ...arrays import COMPLEX_NAN, Array, Complex
 from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Rod
-from ..elements.basis import (
-    lagrange_interpolation_matrix,
-    lobatto_differentiation_matrix,
-    value_and_slope_at_gauss_points,
-)
+from ..elements.basis import value_and_slope_at_gauss_points
 from ..elements.elements import ELEMENT_SETTINGS, Elements, equal_edges
 from ..elements.quadrature import gauss_legendre_rule, gauss_lobatto_rule
+from .field_interpolation import shear_interpolation_matrix
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -157,37 +154,11 @@ def factors_to_unit_tip_displacement(y: Complex, theta: Complex) -> Complex:
 def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
     """Shear force s, (points, k), of k eigenvectors, (unknowns, k), at `points`, (points,), in [0, 1],
     interpolated from the Gauss nodes."""
-    nodes, weights = gauss_legendre_rule(mesh.order)
+    _, weights = gauss_legendre_rule(mesh.order)
     mass = (weights * mesh.lengths[:, None] / 2).ravel() * PENCIL_NORM_SETTINGS.shear_weight**2
     values = vectors[2 * mesh.node_count :] / np.sqrt(mass)[:, None]
-    shear = np.empty((len(points), vectors.shape[1]), complex)
-    for e, indices, coordinates in mesh.points_by_element(points):
-        rows = slice(e * mesh.order, (e + 1) * mesh.order)
-        shear[indices] = lagrange_interpolation_matrix(nodes, coordinates) @ values[rows]
+    shear: Complex = shear_interpolation_matrix(mesh, points.tobytes()) @ values
     return shear
-
-
-def value_and_slope_matrices(mesh: Elements, points: Array) -> tuple[Array, Array]:
-    """Returns (value matrix, slope matrix), (n, nodes + 1) each: matrices from values of a field at all nodes
-    to values, and to derivatives d/du, at `points`, (n,), in [0, 1]; cached and read-only. All elements of
-    `mesh` have the order of the mesh."""
-    return _cached_value_and_slope_matrices(mesh, points.tobytes())
-
-
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)
-def _cached_value_and_slope_matrices(mesh: Elements, point_bytes: bytes) -> tuple[Array, Array]:
-    """The result of `value_and_slope_matrices`. point_bytes: bytes of the array of points."""
-    nodes, _ = gauss_lobatto_rule(mesh.order)
-    derivative = lobatto_differentiation_matrix(mesh.order)
-    points = np.frombuffer(point_bytes)
-    value = np.zeros((len(points), mesh.node_count + 1))
-    slope = np.zeros_like(value)
-    for e, indices, coordinates in mesh.points_by_element(points):
-        element_values = lagrange_interpolation_matrix(nodes, coordinates)
-        value[indices, mesh.node_ranges[e]] = element_values
-        slope[indices, mesh.node_ranges[e]] = element_values @ derivative * (2 / mesh.lengths[e])
-    value.flags.writeable = slope.flags.writeable = False
-    return value, slope
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)
