@@ -1,4 +1,4 @@
-"""Commands that write figures, tables and pages from results, and `serve_page`, a local page."""
+"""Commands that write figures, tables and pages, and `explore`, which serves a local page."""
 
 from pathlib import Path
 from typing import Any

@@ -32,9 +32,9 @@ class ArmRootSettings(KernelConstants):
     """If a Newton step leaves at most this fraction of |w|, the next step starts from w = 0: the remainder
     has lost half of its digits. The leading eigenvalue of a strongly pulled arm is exponentially small."""
     max_later_w_over_root_w: float = 16.0
-    """If D is needed later at a larger |w|, at most this number times |w| of the roots, the roots use the
-    elements for the larger |w|: at most four times as many. Rounding errors grow with the number of
-    elements."""
+    """If D is needed later at a larger |w|, the roots already use the elements for it, but only if it is at
+    most this number times |w| of the roots, so that the elements are at most four times as many. Rounding
+    errors grow with the number of elements."""
 
 
 ARM_ROOT_SETTINGS = ArmRootSettings()

@@ -232,7 +232,7 @@ def _complete_text_lines(blocks: Iterable[np.ndarray]) -> Iterator[str]:
 
 
 def _record_rows(path: Path, layout: Layout, fingerprint: str) -> Iterator[np.ndarray]:
-    """Yields the records of a journal with their checksums, each a row of bytes, (records, bytes)."""
+    """Yields blocks of whole records of a journal with checksums, (records, bytes), one in each row."""
     size = layout.record_dtype.itemsize + CHECKSUM_BYTES
     with path.open("rb") as file:
         file.seek(len(_journal_header(fingerprint)))

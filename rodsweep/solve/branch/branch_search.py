@@ -222,10 +222,10 @@ class BranchSearch:
                 self._follow_branch_into_range(entry, region)
 
     def _follow_detached_within_range(self, start: SpecialPoint) -> None:
-        """Appends the branch through `start`, unless this branch was followed before: `start` is then an
-        artefact of the mesh of its curve of special points. Such an artefact lies, for example, beyond the
-        end of a curve of folds at a symmetry breaking, where a mesh rounds off the corner between two
-        branches. Raises Unsolvable if no branch passes `start`."""
+        """Appends the branch found at `start`, unless this branch was followed before: `start` is then an
+        artefact of the mesh of its curve of special points, for example beyond the end of a curve of folds at
+        a symmetry breaking, where a mesh rounds off the corner between two branches. Raises Unsolvable as
+        `complete_branch_through` does, and if the branches already have the maximum number of cycles."""
         limits = self._limits_of_next_branch()
         if limits.max_cycles < 1:
             raise Unsolvable("the branches of the rod have the maximum number of cycles; shorten the range")

@@ -45,8 +45,9 @@ def end_at_range_end_near_hopf(
 def end_before_first_cycle(
     curve: BranchCurve, first: BranchCycle, limits: BranchLimits, index: int
 ) -> BranchEnd:
-    """The end of the branch `curve`, which has only its first special point, at the end of the range with the
-    index `index`, before its first cycle `first` beyond the range."""
+    """The end of a branch that leaves the range before its first cycle. curve: the branch, which has only its
+    first special point. first: its first cycle, which lies beyond the range. index: index of the end of the
+    range that the branch passes."""
     passage = RangeEndPassage(first, index, limits.accuracy)
     if curve.start_hopf_index >= 0:
         hopf = limits.hopfs[curve.start_hopf_index]

@@ -169,7 +169,7 @@ class RegionBeyondRange:
         return self._range_entry_of(follow_from_cycle(curve, first_cycle, limits))
 
     def _range_entry_of(self, curve: BranchCurve) -> RangeEndPassage | None:
-        """The place where the branch `curve`, followed to its end, enters the range, or None."""
+        """Records the branch `curve`; returns the place where it enters the range, or None."""
         self._record_branch(curve)
         if curve.end_hopf_index >= 0:
             self._hopf_indices_of_branch_ends.add(curve.end_hopf_index)

@@ -72,7 +72,8 @@ def extrapolation_points_of(arkimex_type: str) -> NDArray[np.int64]:
 @petsc_callback(ADDRESS_TYPE)
 def begin_step(ts: int) -> int:
     """PETSc's pre-step function: the stages stored for the finished step become the stages of the last step,
-    and a new Newton matrix at the predicted middle of the new step is requested."""
+    and a new Newton matrix is requested, for arkimex at the predicted middle of the new step, for other TS
+    types at its start."""
     address = np.empty(1, np.int64)
     context_of_ts(ts, address.ctypes.data)
     context = address[0]

@@ -61,8 +61,8 @@ class ContourSettings(KernelConstants):
     """Radius of the first circle at a first node, divided by the distance in w over which an exponent of D
     changes by about 1."""
     min_circle_radius_over_w_scale: float = 0.75
-    """Radius of the smallest circle at any node, divided by the distance in w over which an exponent of D
-    changes by about 1. Every trial halves the radius."""
+    """Radius of the smallest circle at any node, divided by the unit of the radii, which is smaller close to
+    a zero of D (`max_log_D_change_over_radius`). Every trial halves the radius."""
     max_circle_radius_over_w_scale: float = 48.0
     """Radius of the largest circle at any node, divided by the distance in w over which an exponent of D
     changes by about 1 (`mean_wave_number_and_w_scale`)."""

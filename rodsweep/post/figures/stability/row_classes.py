@@ -40,8 +40,9 @@ def classes_between_crossings(
     crossings, and between the outermost crossings and the ends of the row or the force that crushes the rod.
 
     x: values of the parameter along a row. y: values of the parameter that is constant on a row. The part
-    before the first crossing has a point only if this crossing is an onset of a stable rod, the part behind
-    the last stored crossing only if all crossings are stored. Rows with an infinite y are left out.
+    before the first crossing has a point only if a stable rod begins to oscillate at this crossing, the part
+    behind the last stored crossing only if all crossings are stored and no range of the row is undecided.
+    Rows with an infinite y are left out.
     """
     names = ("crossing_kind", "unstable_after", "crossing_at", "crossing_count", "open_from")
     kinds, unstable_counts, positions, counts, undecided_from = map(view.flattened_by_point, names)

@@ -149,8 +149,8 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredToNewPoint
         if len(close):
             equal_values_text = " and ".join(repr(float(value)) for value in axis[close[0] : close[0] + 2])
             raise InputError(
-                f"the files have {name} = {equal_values_text}, which differ by rounding only; make "
-                "these values equal"
+                f"the files have {name} = {equal_values_text}, which differ by rounding only; write one "
+                "of these values into all configs, and compute the files with the other value again"
             )
         axes.append(axis)
     union = Points(grids[0].names, tuple(axes), is_grid=True)
