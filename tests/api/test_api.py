@@ -477,6 +477,7 @@ def test_a_sweep_is_written_read_and_drawn(tmp_path):
     assert "F_onset" in data._repr_html_()
     picture = rs.plot(data, tmp_path / "d.pdf")
     assert picture.shown == "critical forces against k2"
+    assert repr(picture) == "Picture(shown='critical forces against k2')"
     assert picture._repr_mimebundle_()["image/png"].startswith(b"\x89PNG")
     assert (tmp_path / "d.pdf").read_bytes().startswith(b"%PDF")
     picture.save(tmp_path / "d.svg")

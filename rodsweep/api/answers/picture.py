@@ -125,7 +125,7 @@ class Picture:
     """
 
     views: Sequence[ResultView] = field(repr=False)
-    choices: dict[str, Any]
+    choices: dict[str, Any] = field(repr=False)
     shown: str
     """Description of the figure in one sentence."""
     image: bytes = field(repr=False)
