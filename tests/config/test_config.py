@@ -518,6 +518,12 @@ def test_a_key_without_value_is_refused_without_the_word_of_a_language(tmp_path,
             (),
             "has characters that cannot be printed",
         ),
+        (
+            "task: spectrum\ntitle: a\x07b\n",
+            (),
+            "c.yaml, line 2, column 9: '\\x07' cannot be printed; remove ",
+        ),
+        ("\0task: spectrum\n", (), "c.yaml, line 1, column 1: '\\x00' cannot be printed; remove "),
     ],
 )
 def test_odd_keys_and_texts_are_refused_with_what_to_write(tmp_path, text, overrides, sentence):

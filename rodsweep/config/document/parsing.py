@@ -13,6 +13,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 from ruamel.yaml.events import AliasEvent, Event, ScalarEvent
 from ruamel.yaml.parser import Parser
+from ruamel.yaml.reader import ReaderError
 
 from ...errors import InputError, short_repr
 from ..values import overflows_float, printable_name
@@ -77,6 +78,11 @@ def parsed_yaml(text: str, source: str) -> Any:
         return yaml.load(text)
     except InputError as error:
         raise InputError(f"{source}{error}") from None
+    except ReaderError as error:
+        line = text.count("\n", 0, error.position) + 1
+        column = error.position - text.rfind("\n", 0, error.position)
+        message = f"{text[error.position]!r} cannot be printed; remove this character"
+        raise InputError(f"{source}, line {line}, column {column}: {message}") from None
     except YAMLError as error:
         location = _location_clause(getattr(error, "problem_mark", None))
         context, problem = (getattr(error, name, None) or "" for name in ("context", "problem"))
