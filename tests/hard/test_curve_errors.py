@@ -42,3 +42,15 @@ def test_points_of_curves_lie_on_branches_within_their_errors(rod, F, taper, poi
         i = min(near, key=lambda i: abs(branch.special_period[i] / period - 1))
         assert abs(branch.special_at[i] - at) <= error + branch.special_error[i]
         assert branch.special_period[i] == pytest.approx(period, rel=1e-5)
+
+
+@pytest.mark.long
+def test_curve_of_folds_of_lopsided_cycles_leads_through_all_rows():
+    """The fold on the row k1 = 30 is that of `configs/lopsided.yaml`, at F = 19.71302059 by another code."""
+    F, k1 = ({"start": start, "stop": stop, "num": num} for start, stop, num in ((12, 24, 13), (30, 32, 2)))
+    found = rs.sweep("phase_diagram", F=F, k1=k1, k2=0.5, gamma3=0.1, cycles=True, certify=False)
+    assert int(found.cycle_curves_untraced) == 0
+    on_curve = {name: np.asarray(found[f"cycle_curve_{name}"]) for name in ("F", "k1", "error", "number")}
+    assert set(on_curve["number"]) == {1}
+    assert (on_curve["k1"][[0, -1]] == (30, 32)).all()
+    assert abs(on_curve["F"][0] - 19.71302059) <= on_curve["error"][0] + 1e-8

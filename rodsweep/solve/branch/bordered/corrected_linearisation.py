@@ -53,8 +53,8 @@ class CorrectedLinearisation:
     """Tangent and multipliers at `orbit`, corrected with the factors of the nearby matrix `nearby_matrix`.
     corrected_tangent: tangent of the branch, (N + 1,), of unit arc length.
     multipliers_over_solved_time_interval: multipliers over half a period for a symmetric orbit, else over the
-    whole period, (multipliers,). relative_error: estimate of the error of the multipliers, divided by the
-    larger of 1 and the largest modulus."""
+    whole period, (multipliers,). relative_error: estimate of the largest error of a multiplier, each divided
+    by the larger of 1 and its own modulus."""
 
     orbit: Orbit
     nearby_matrix: BorderedMatrix
@@ -191,8 +191,9 @@ class _CorrectedInvariantSubspaces:
     def correct_ritz_values(self, orbit: Orbit, end_changes: Array) -> float:
         """Corrects the Ritz values at the cycle `orbit`. Returns the largest change of a Ritz value, each
         divided by the larger of 1 and its own modulus, because a multiplier near the unit circle decides on
-        stability, however large another multiplier is. end_changes: ends, (k, n), of
-        `BorderedMatrix.residual_variations` at this cycle for `increments`."""
+        stability, however large another multiplier is. end_changes: the `ends`
+        that `BorderedMatrix.residual_variations` returns at this cycle for the variations `increments`,
+        (k, n)."""
         n = self._left.shape[1]
         ends = np.ascontiguousarray((self.increments[:, -2 - n : -2] + end_changes).T)
         images = orbit.symmetry.apply_inverse_to_flow(ends, orbit.form.layout)

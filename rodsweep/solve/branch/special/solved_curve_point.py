@@ -29,15 +29,15 @@ class CurveSecantSettings(KernelConstants):
     max_tip_y_of_small_cycle: float = 0.05
     """Below this largest tip y, in L, the test function of a fold is divided by the deflection of the cycle;
     without the division the function vanishes at a Hopf point too."""
-    first_secant_step: float = 1e-3
-    """First step of the secant method across a curve, in arc length, if no derivatives are known."""
+    first_secant_step: float = 1e-4
+    """First secant step, in arc length, if no derivatives are known. Cycles near a symmetry breaking change
+    by 40 times the arc length; Newton's method fails after 1e-3 (`tests/hard/test_curve_errors.py`)."""
     max_secant_step: float = 0.1
     """Longest step of the secant method across a curve, in arc length; a longer step is a failure."""
     max_secant_steps: int = 12
     """Maximum number of secant steps for one point."""
     max_distance_from_curve: float = 1e-8
-    """Largest distance, in arc length, of a point from the curve after the last, linear step of the secant
-    method."""
+    """Largest distance, in arc length, of a point from the curve after the last, linear secant step."""
     max_secant_error_per_accuracy: float = 0.1
     """The distance of a point from the curve may cause at most this fraction of `relative_parameter_accuracy`
     as relative error of the parameter along a row."""
