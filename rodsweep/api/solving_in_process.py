@@ -188,7 +188,7 @@ def _solve_outcomes(
 
     @contextmanager
     def point_progress() -> Iterator[None]:
-        """Marks the reports in the `with` block as reports of the next point."""
+        """Context in which progress reports are displayed as reports of the next point."""
         name = f"point {solved_count + 1} of {point_count}" if point_count > 1 else ""
         share = solved_count / point_count, (solved_count + 1) / point_count
         with solve_part(name, share), reporting_to(display_listener(display, name)):

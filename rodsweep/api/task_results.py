@@ -33,7 +33,7 @@ class Result(Protocol):
 
     @property
     def view(self) -> ResultView:
-        """The view that tables read, with the attributes `task` and `config_resolved`."""
+        """The `ResultView` from which tables are made, with the attributes `task` and `config_resolved`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,7 @@ class DatasetResult:
 
     @property
     def view(self) -> ResultView:
-        """The view of the Dataset that tables read."""
+        """A `ResultView` of the Dataset, from which tables are made."""
         return view_of_dataset(self.dataset, Path(str(self.dataset.attrs.get("title", "data"))))
 
 
@@ -84,7 +84,7 @@ class SolvedPoints:
 
     @cached_property
     def view(self) -> ResultView:
-        """The view of the points that tables read."""
+        """A `ResultView` of the points, from which tables are made."""
         return view_in_memory(self.job, self.plan, self.values, self.sweep_wide_variables)
 
     def __reduce__(self) -> tuple[type[DatasetResult], tuple[xr.Dataset]]:

@@ -43,8 +43,9 @@ class StoredSpecialPoint:
     """At a symmetry breaking: number, from 1, of the second branch that begins or ends there; -1: no
     branch."""
     amplitude_coefficient: float = nan
-    """Coefficient a of a Hopf point, in L: the largest y of its cycles is |a| sqrt(|p/at - 1|) to leading
-    order (p: followed parameter); a < 0: the cycles are at smaller p."""
+    """Coefficient a of a Hopf point, in L: the largest y of its cycles is |a| sqrt(|p/p_H - 1|) to leading
+    order (p: followed parameter, p_H: its value `at` at the Hopf point); a < 0: the cycles are at smaller
+    p."""
     period_error: float = nan
     """Estimate of the relative error of `period`."""
     tip_y_max_error: float = nan
@@ -92,11 +93,12 @@ class StoredBranch:
         return self.special_points[-1].reason not in EARLY_STOP_REASONS and bool((self.stability >= 0).all())
 
     def scaled_curves_near_hopf_points(self) -> list[tuple[Array, Array, NDArray[np.integer]]]:
-        """For each Hopf point at an end of the branch: (|p/p_H - 1|, y/|a|, stability) up to the first fold.
+        """For each Hopf point at an end of the branch: (|p/p_H - 1|, y/|a|, stability) at the vertices up to
+        the first fold.
 
-        p: followed parameter. p_H, a: p and amplitude coefficient of the Hopf point. Hopf points with unknown
-        or zero a are skipped, and the vertex of the Hopf point is left out. Shapes (n,), (n,) and (n - 1,), n
-        > 1.
+        p: followed parameter. y: largest y of the tip. p_H, a: p and amplitude coefficient of the Hopf point.
+        stability: between neighbouring vertices. Hopf points with unknown or zero a are skipped, and the
+        vertex of the Hopf point is left out. Shapes (n,), (n,) and (n - 1,), n > 1.
         """
         curves = []
         for special, order in (
@@ -162,7 +164,8 @@ def _parameter_clipped_at_special_points(x: Array, error: Array, is_special: NDA
 
 
 def _special_point(v: dict[str, Array], index: int) -> StoredSpecialPoint:
-    """Special point at index `index` of the stored list."""
+    """Special point at index `index` of the stored list. v: variables of the file at the point of the rod, by
+    name."""
     values = {field.name: v[f"special_{field.name}"][index].item() for field in fields(StoredSpecialPoint)}
     texts = {"kind": SPECIAL_KINDS[values["kind"]], "reason": END_REASONS[values["reason"]]}
     return StoredSpecialPoint(**values | texts)

@@ -46,7 +46,8 @@ IDLE_FIRST_RANK_WAIT_SECONDS = 0.05
 
 
 class ChunkServer:
-    """Takes chunks for the first rank, and answers the requests of all other ranks, also from a thread."""
+    """Hands chunks of work items to the first rank when it calls `next_chunk`, and to all other ranks on
+    request; a thread answers these requests while the first rank solves."""
 
     def __init__(
         self, ranks: Ranks, queue: ChunkQueue, stop: StopRequest, show_position: Callable[[str, float], None]
@@ -189,7 +190,7 @@ class ChunkServer:
 
 
 class ChunkClient:
-    """Takes chunks for a rank other than the first, by messages to the first rank."""
+    """Obtains chunks of work items for a rank other than the first, by messages to the first rank."""
 
     def __init__(self, ranks: Ranks, stop: StopRequest):
         self.comm = ranks.comm

@@ -168,8 +168,8 @@ def two_meshes_cost(points: Points, mode_count: int, accuracy: float) -> CostEst
 
 def spectra_cost(points: Points, mode_count: int, accuracy: float, certify: bool) -> CostEstimate:
     """Estimated cost of the spectra of `points`, extrapolated from evenly spaced points of the sweep; 0 if
-    none of these points has a rod. mode_count: number of eigenvalues. accuracy: relative accuracy. certify:
-    whether spectra are certified."""
+    the rod model applies to none of these points. mode_count: number of eigenvalues. accuracy: relative
+    accuracy. certify: whether spectra are certified."""
     rods = [points.rod(int(index)) for index in sampled_points_with_rod(points)]
     counts = [_first_mesh_unknown_count(rod, mode_count, accuracy) for rod in rods]
     if not counts:  # no rod covers any point of the sample

@@ -31,8 +31,8 @@ def finest_initial_mesh(
     """The initial mesh with the most nodes among sampled points of a sweep and the corners of its grid; None
     if the rod model applies to no point.
 
-    mesh_of: function from a rod to its initial mesh. parameter_ends: ends, (n,), of the range in which each
-    rod is searched, by name of the parameter; meshes are compared at these values.
+    mesh_of: function from a rod to its initial mesh. parameter_ends: for each parameter along which rods are
+    searched, by name: values at the ends of the range, (n,), at which meshes are compared too.
     """
     # The finest meshes belong to extreme parameter values, which evenly spaced points may miss.
     indices = {*list_of(sampled_points_with_rod(points)), *_grid_corner_indices(points)}

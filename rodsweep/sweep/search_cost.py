@@ -17,7 +17,8 @@ THRESHOLD_SEARCH_MS = 24.0
 """Time to search one rod for crossings along one parameter, in ms: mean over 72 rods, of which a few take
 four times as long."""
 SEARCH_CERTIFICATE_MS = 16.0
-"""Time to certify that a search along one parameter missed no crossing, in ms: mean over the 72 rods."""
+"""Time to certify that a search along one parameter missed no crossing, in ms: mean over the 72 rods of
+THRESHOLD_SEARCH_MS."""
 SOFT_SEARCH_MS_PER_F2_OVER_K2 = 0.014
 """Time to search one uniform rod for exchanges of the leading eigenvalue, divided by F^2/k2, in ms. F:
 largest force of the search. The number of exchanges grows with F^2/k2: 30 rods with k2 from 0.3 to 3 took 0.8
@@ -39,9 +40,10 @@ to 3.8 s were measured for about 50 points."""
 HOPF_SEARCH_MS = 25.0
 """Time to search one rod for Hopf points, in ms: mean over 90 rods."""
 HOPF_CERTIFICATE_MS = 3.0
-"""Time to certify that no Hopf point of a rod is missing, in ms: mean over the 90 rods."""
+"""Time to certify that no Hopf point of a rod is missing, in ms: mean over the 90 rods of HOPF_SEARCH_MS."""
 HOPF_NORMAL_FORMS_MS_PER_ROD = 18.0
-"""Time of the normal forms of the two or three Hopf points of a rod, in ms: mean over the 90 rods."""
+"""Time of the normal forms of the two or three Hopf points of a rod, in ms: mean over the 90 rods of
+HOPF_SEARCH_MS."""
 
 
 def searches_cost(search_count: int, certify: bool, is_varying: bool) -> CostEstimate:
@@ -52,8 +54,9 @@ def searches_cost(search_count: int, certify: bool, is_varying: bool) -> CostEst
 
 
 def extra_seconds_of_soft_searches(points: Points, F_max: float, is_varying: bool) -> float:
-    """Time of all searches along F in `points` beyond the time of stiff rods, in s: exchanges and crossings
-    become many where F^2/k2 is large. F_max: largest force. is_varying: whether any arm is not uniform."""
+    """Time of all searches along F in `points` beyond the time of stiff rods, in s. Where F^2/k2 is large,
+    many exchanges of the leading eigenvalue and many crossings of the imaginary axis are found. F_max:
+    largest force. is_varying: whether any arm is not uniform."""
     indices = sampled_points_with_rod(points)
     if not indices.size:
         return 0.0
@@ -86,7 +89,7 @@ def diagram_cost(
 ) -> CostEstimate:
     """Estimated cost of a phase diagram of `row_count` rows, without limit cycles. certify: whether each row
     is certified. is_varying: whether any arm is not uniform. has_curves, has_criticality: whether boundary
-    curves and their criticality are computed; the cost for uniform rods is neglected."""
+    curves and their criticality are computed; their cost is neglected for uniform rods."""
     searches = searches_cost(row_count, certify, is_varying)
     arm_seconds = CURVES_OF_ARMS_SECONDS * has_curves + CRITICALITY_OF_ARMS_SECONDS * has_criticality
     return replace(searches, seconds=searches.seconds + arm_seconds * is_varying)
@@ -103,8 +106,8 @@ def criticality_cost(points: Points, F_max: float, certify: bool, is_varying: bo
 
 
 MAX_SAMPLED_ROWS = 20
-"""Largest number of rows (rods searched along F) for which an estimate counts the boxes where the search
-under pulls starts; counting takes up to 20 ms a row."""
+"""Largest number of rows of a phase diagram (rods searched along F) for which an estimate counts the first
+boxes of the search under pulls, F < 0; counting takes up to 20 ms a row."""
 COVERING_MS_PER_BOX = 0.11
 """Time to search one uniform rod under pulls, divided by the number of boxes from which the covering starts,
 in ms: 0.07 to 0.15 for twelve rods with 98 to 2900 boxes."""
@@ -140,8 +143,9 @@ def pulled_rows_seconds_and_doubt(rods: Sequence[Rod], F_values: Array, row_coun
 
 
 def _largest_searchable_pull(rod: Rod, pulls: Array) -> float:
-    """First of the increasing `pulls` from which a row can be searched; 0 if there is none. For arms that are
-    not uniform, whose searchable pulls are not known in advance, the first pull."""
+    """Strongest of the `pulls` (increasing forces F < 0) from which a row of a phase diagram can be searched;
+    0 if there is none. For arms that are not uniform, whose searchable pulls are not known in advance, the
+    strongest pull."""
     if not rod.is_uniform_and_linear:
         return float(pulls[0])
     low = 0
@@ -170,7 +174,8 @@ def _pulled_row_seconds(rod: Rod, start_pull: float) -> float:
 
 
 def _boxes_from_pull_to_zero(rod: Rod, pull: float) -> Array | None:
-    """Boxes of the covering from `pull` to F = 0; None unless `pull` < 0 and an a-priori bound applies."""
+    """First boxes of the covering from F = `pull` to F = 0, (n, 4), rows as `CrossingBox`; None unless `pull`
+    < 0 and an a-priori bound applies."""
     # Imported for rows under pulls only: these modules load the compiler.
     from ..determinant.certificate.first_crossing_boxes import first_crossing_boxes
     from ..determinant.parameter_path import ParameterPath

@@ -55,9 +55,9 @@ class SweepWideVariableSolver(Protocol):
     """Computes variables that depend on all points, for example curves. Every rank has its own object."""
 
     def work_items(self, view: ResultView, results: Mapping[int, NamedArrays]) -> WorkItems | None:
-        """The work items of the current stage, to be divided among the ranks, or of the last stage, if all
-        its items are solved. The items of different stages have different numbers. None if the variables
-        need no work items.
+        """The work items of the stage that is to be solved now, to be divided among the ranks; after the last
+        stage, the items of the last stage again, which are then all solved. The items of different stages
+        have different numbers. None if the variables need no work items.
 
         view: the file with all points. results: results of work items so far, by number.
         """

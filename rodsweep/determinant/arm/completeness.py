@@ -32,30 +32,30 @@ from .value import determinant_from_propagators
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CompletenessSettings(KernelConstants):
-    """Settings for proofs of completeness, and for the real points x_1 < ... < x_k of the module."""
+    """Settings for proofs of completeness from D'/D at real points x_1 < ... < x_k."""
 
     eigenvalue_count_beyond_modes: int = 2
     """Number of eigenvalues requested beyond the modes to prove. With 2 additional eigenvalues, 59 of 100
     random arms need a count; with 0, 73 arms. A count costs more than two eigenvalues."""
     real_point_counts: tuple[int, ...] = (3, 6)
-    """Numbers k of points x_j of successive trials. Fewer points can lie closer to the hull; more points
-    suffice for a wider hull."""
+    """Numbers k of real points x_j of D'/D in successive trials. Fewer points can lie closer to the hull;
+    more points suffice for a wider hull."""
     max_real_point_over_largest_w: tuple[float, ...] = (1.5, 6.0)
-    """Upper limit of the largest point x_k over the largest known |w|, for each k in `real_point_counts`.
-    With a larger x_k unknown and known eigenvalues contribute almost equally, and most proofs fail."""
+    """Upper limits of the largest point x_k of D'/D over the largest known |w|, one for each k. With a larger
+    x_k unknown and known eigenvalues contribute almost equally, and most proofs fail."""
     min_real_point_over_line_distance: float = 0.35
-    """Lower limit of the smallest point x_1 over the distance of the line from the imaginary axis."""
+    """Lower limit of the smallest point x_1 of D'/D over the distance of the line from the imaginary axis."""
     min_real_point: float = 1e-6
-    """Lower limit of the smallest point x_1, in 1/tau2; needed if the line and the hull are close to 0."""
+    """Lower limit of the smallest point x_1 of D'/D, in 1/tau2; needed if line and hull are close to 0."""
     relative_real_point_spread: float = 1.0
-    """Length (x_k - x_1)/x_1 of the interval of the points, which are equidistant."""
+    """Length (x_k - x_1)/x_1 of the interval of the equidistant points x_j of D'/D."""
     real_point_shift_factor: float = 1.3
-    """Factor by which all points x_j are multiplied until every term of the sum R has a real part >= 0."""
+    """Factor on the points x_j of D'/D, applied until every term of the sum R has a real part >= 0."""
     hull_strip_count: int = 24
     """Number of vertical strips of the hull right of the line, each with its own bound of Re phi."""
     max_remainder_over_contribution: float = 0.7
-    """Completeness is proved if the sum R plus its rounding error, and -R, are below this fraction of the
-    smallest possible contribution of an unknown eigenvalue right of the line."""
+    """Completeness is proved if the sum R (`Remainder`) plus its rounding error, and -R, are below this
+    fraction of the smallest possible contribution of an unknown eigenvalue right of the line."""
     log_derivative_rounding_ratio: float = 10.0
     """Relative rounding error of D'/D divided by the relative rounding error of D. Measured: at most 0.08
     between two sets of elements, over 45 random arms."""
@@ -74,8 +74,8 @@ COMPLETENESS_SETTINGS = CompletenessSettings()
 
 
 class Remainder(NamedTuple):
-    """The sum R of the module over all unknown eigenvalues, and its rounding error. min_unknown_contribution:
-    lower bound of the contribution of an unknown eigenvalue right of the vertical line."""
+    """The sum R of phi(w) = prod_j 1/(x_j - w) over the unknown eigenvalues w, and its rounding error.
+    min_unknown_contribution: lower bound of the contribution of an unknown eigenvalue right of the line."""
 
     phi_sum: float
     rounding_error: float
@@ -156,16 +156,16 @@ def _last_proof_point(points: Array) -> float:
 
 @compiled
 def proves_completeness(remainder: Remainder) -> bool:
-    """Whether the sum R is too small for an unknown eigenvalue right of the line. False also if R is far
-    below 0: some known eigenvalue is then not a root of D."""
+    """Whether the sum R of a `Remainder` is too small for an unknown eigenvalue right of the line. False also
+    if R is far below 0: some known eigenvalue is then not a root of D."""
     max_remainder = COMPLETENESS_SETTINGS.max_remainder_over_contribution * remainder.min_unknown_contribution
     return remainder.phi_sum + remainder.rounding_error < max_remainder and -max_remainder < remainder.phi_sum
 
 
 @compiled
 def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
-    """Points x_1 < ... < x_k, (k,), so far right that each term of R has real part >= 0; empty if such points
-    would overflow. line: Re w of the vertical line. k: number of points. a, c: constants of the hull."""
+    """Real points x_1 < ... < x_k, (k,), so far right that Re prod_j 1/(x_j - w) >= 0 for all w in the hull;
+    empty if the points overflow. line: Re w of the vertical line. a, c: constants of `hull.hull`."""
     # As close to the hull as allowed: from farther away all eigenvalues contribute alike.
     x = max(a * a, COMPLETENESS_SETTINGS.min_real_point_over_line_distance * abs(line))
     x = max(x, COMPLETENESS_SETTINGS.min_real_point)
@@ -179,7 +179,7 @@ def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
 
 @compiled
 def _max_argument_sum(points: Array, a: float, c: float) -> float:
-    """Upper bound of sum_j arg(x_j - v), v in a hull (constants a, c); inf if a point x_j may lie in it."""
+    """Upper bound of sum_j arg(x_j - v), v in the hull (a, c) of `hull.hull`; inf if an x_j may lie in it."""
     b = 1 - c
     total = 0.0
     for x in points:
@@ -197,9 +197,9 @@ def _max_argument_sum(points: Array, a: float, c: float) -> float:
 def sum_over_unknown_eigenvalues(
     line: float, known: Complex, error: Array, hull: EigenvalueHull, points: Array, level: tuple[float, Array]
 ) -> Remainder:
-    """The sum R over the unknown eigenvalues. line: Re w of the vertical line. known, error: known
-    eigenvalues, closed under conjugation, and their errors, (n,) each. points: x_j, (k,). level: (W,
-    propagators for |w| <= W), W at least the last point."""
+    """The sum R of prod_j 1/(x_j - w) over the unknown eigenvalues w. line: Re w of the vertical line. known,
+    error: known eigenvalues, closed under conjugation, and their errors, (n,) each. points: real x_j,
+    increasing, (k,). level: (W, propagators for |w| <= W), W at least the largest x_j."""
     k = len(points)
     R = 0.0
     rounding = 0.0
@@ -228,7 +228,7 @@ def sum_over_unknown_eigenvalues(
 
 @compiled
 def _min_contribution_right_of(line: float, points: Array, a: float, c: float) -> float:
-    """Lower bound of Re phi(w), w real, and 2 Re phi(w), w complex, right of the line in a hull (a, c)."""
+    """Lower bound of what an eigenvalue right of the line in the hull (a, c) adds to R (`Remainder`)."""
     b = 1 - c
     rightmost = max(a * a / (4 * b), line)
     lower_bound = 1.0

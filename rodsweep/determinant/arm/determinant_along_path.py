@@ -62,7 +62,7 @@ class _DoubleEigenvalueStep(NamedTuple):
 
     @property
     def errors(self) -> tuple[float, float]:
-        """(error of x, error of p) after the last step."""
+        """(error of the eigenvalue x, error of the path variable p), each not below the last step."""
         return max(self.rounding_error_of_x, abs(self.change_of_x)), max(
             self.rounding_error_of_p, abs(self.change_of_p)
         )
@@ -195,7 +195,7 @@ class ArmAlongPath:
         return _DoubleEigenvalueStep(x_step, p_step, e_x, total_rounding * abs(D_ww) / abs(cross))
 
     def _usable_family(self, x: float, p: float) -> ArmFamily | None:
-        """The family of arms that contains p, if it is valid at w = x; else None."""
+        """The family of arms around p; None if there is none, or if it is not valid at |w| = |x|."""
         family = self.family_at(p)
         return family if family is not None and abs(x) < family.largest_w else None
 

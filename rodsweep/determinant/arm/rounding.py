@@ -46,9 +46,9 @@ class ArmRoundingSettings(KernelConstants):
 
     error_per_product_in_epsilons: float = 1.5
     """Relative rounding error of a product of propagator and minor, divided by the spacing of doubles at 1.
-    Measured for 700 eigenvalues of random arms, half of them close to crushing, with four divisions of each
-    arm into elements: 1.5 times the difference between divisions exceeds the resulting bound by at most 1
-    %."""
+    Measured for 700 eigenvalues of random arms, half of them close to crushing, each with four divisions of
+    the arm into elements: with the factor 1.5 the resulting bound is at most 1 % below 1.5 times the
+    difference between divisions."""
     error_per_entry_in_epsilons: float = 1.0
     """Error of an entry of a propagator that is interpolated on an interval of a path variable, in units of
     the largest modulus of the entry on the interval times the spacing of doubles at 1. Measured: 1300

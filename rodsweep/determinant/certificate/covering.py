@@ -42,7 +42,7 @@ class BoxProofSettings(KernelConstants):
     half_width_over_radius_factor: float = 0.6
     """The next trial ratio is this number times the previous trial ratio t."""
     max_half_width_over_radius_trials: int = 30
-    """Maximum number of trial ratios t, of which the last is 2e-7."""
+    """Maximum number of trial ratios of half-width to bidisc radius; the last ratio is 2e-7."""
     min_half_width_over_centre: float = 1e-9
     """An undecided box is left open if its half-widths are below this number times eta and times |p|."""
     max_boxes: int = 1_000_000
@@ -173,7 +173,7 @@ def box_outcome_and_costs(
 
 @compiled
 def exponent_changes(centre: BidiscCentre, half: tuple[float, float]) -> tuple[float, float]:
-    """Largest change (in eta, in p) of D's exponents, log w and log P^2 over the half-widths `half`."""
+    """Largest change of D's exponents, log w and log P^2: (if eta, if p changes by its half-width `half`)."""
     F, nu, c2, gamma3 = centre.coefficients
     size = abs(centre.w)
     root_plus = math.sqrt(max(abs(centre.z_plus), 1.0))

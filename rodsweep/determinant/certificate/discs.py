@@ -52,9 +52,9 @@ BidiscRadii = tuple[float, float]
 
 class BidiscCentre(NamedTuple):
     """The centre (w, p) of a bidisc, with the exponents of D at the centre. coefficients: (F, nu, c2, gamma3)
-    at p. dispersion_coefficient_derivatives: derivatives of T, N, G and X by p. log_scale: S, the logarithm
-    of the scale of D. P, z_plus, z_minus: P, z+ and z-. z_plus_slopes, z_minus_slopes: (dz/dw, dz/dp) of z+
-    and of z-."""
+    at p. dispersion_coefficient_derivatives: first and second derivatives by p of T = c2 + gamma3, N = F g, G
+    = g nu and X = c2 gamma3. log_scale: S, the logarithm of the scale of D. P, z_plus, z_minus: P, z+ and z-.
+    z_plus_slopes, z_minus_slopes: (dz/dw, dz/dp) of z+ and of z-."""
 
     w: complex
     coefficients: Coefficients
@@ -74,8 +74,8 @@ def bidisc_centre(
     dispersion_coefficient_derivatives: DispersionCoefficientDerivatives,
     S: float,
 ) -> BidiscCentre:
-    """The centre of a bidisc at w. dispersion_coefficient_derivatives: derivatives by p of T, N, G and X. S:
-    logarithm of the scale of D at w."""
+    """The centre of a bidisc at w. dispersion_coefficient_derivatives: first and second derivatives by p of T
+    = c2 + gamma3, N = F g, G = g nu and X = c2 gamma3. S: logarithm of the scale of D at w."""
     exponents = exponent_derivatives(w, coefficients)
     p_slope_plus, p_slope_minus = squared_exponent_slopes_by_p(
         w, exponents, dispersion_coefficient_derivatives
@@ -151,7 +151,8 @@ def entire_cosh_bounds_on_bidisc(
 
 @compiled
 def bound_for_equal_exponents(centre: BidiscCentre, rates: DerivativePair, radii: BidiscRadii) -> float:
-    """`bound_on_bidisc` for nearly equal z+ and z-, from |E(z+) - E(z-)| <= 4 |P| max |dE/dz|."""
+    """`bound_on_bidisc` for nearly equal z+ and z-, from |E(z+) - E(z-)| <= 4 |P| max |dE/dz|, E(z) = (cosh
+    sqrt(z) - 1)/z."""
     w = centre.w
     S = centre.log_scale
     F, nu, c2, gamma3 = centre.coefficients
@@ -176,7 +177,8 @@ def bound_for_equal_exponents(centre: BidiscCentre, rates: DerivativePair, radii
 
 @compiled
 def bound_on_bidisc(centre: BidiscCentre, rates: DerivativePair, radii: BidiscRadii) -> float:
-    """An upper bound of |D exp(-L dw - K dp)| exp(-S) over the bidisc about `centre`; rates: (L, K)."""
+    """An upper bound of |D exp(-L dw - K dp)| exp(-S) over the bidisc about `centre`; rates: (L, K). dw, dp:
+    distances from the centre. S: `centre.log_scale`."""
     F, nu, c2, _ = centre.coefficients
     separate_bound = bound_for_distinct_exponents(centre, rates, radii)
     if F * (nu + F * c2) < 0:  # both exponentials grow at similar rates; separate bounds do not cancel
@@ -186,9 +188,9 @@ def bound_on_bidisc(centre: BidiscCentre, rates: DerivativePair, radii: BidiscRa
 
 @compiled
 def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, radii: BidiscRadii) -> float:
-    """`bound_on_bidisc` for distinct z+ and z-, from separate bounds of E(z+) and E(z-); inf if the bidisc is
-    too large. Over the bidisc, w changes by a factor 1 + e1 and g nu + c2 gamma3 w by a factor 1 + e2, with
-    bounds of |e1| and |e2|; 2 - sqrt(1 - e) majorises sqrt(1 + e)."""
+    """`bound_on_bidisc` for distinct z+ and z-, from separate bounds of E(z+) and E(z-), E(z) = (cosh sqrt(z)
+    - 1)/z; inf if the bidisc is too large. Over the bidisc, w changes by a factor 1 + e1 and g nu + c2 gamma3
+    w by a factor 1 + e2, with bounds of |e1| and |e2|; 2 - sqrt(1 - e) majorises sqrt(1 + e)."""
     w = centre.w
     S = centre.log_scale
     P = centre.P

@@ -43,9 +43,9 @@ class WindingSettings(KernelConstants):
     integer_tolerance: float = 1e-3
     """The count fails if the computed winding number differs from the nearest integer by more than this."""
     dominance_retry_distance_over_w: float = 0.25
-    """After a failed proof of dominance, the phase is followed by nodes before dominance is tried again: over
-    this length times |w| if the proof succeeded at first and failed further on, where w is the point of
-    failure. The length doubles after each proof that fails at its start."""
+    """If a proof of dominance succeeds at first and fails further on, at the point w, the phase is followed
+    by nodes over this length times |w| before dominance is tried again. The length doubles after each proof
+    that fails at its start."""
     first_step_over_zero_free_radius: float = 1.9
     """The first step tried from a node is this number times its zero-free radius. A step beyond the zero-free
     radius needs a next node whose zero-free radius covers the step."""

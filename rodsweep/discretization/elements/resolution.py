@@ -14,7 +14,8 @@ class ResolutionSettings:
     """Fitted constants of the order and number of elements (see the module docstring); limits of meshes."""
 
     reference_digits: int = 4
-    """The order is order_intercept + order_slope |q| for this number of digits of accuracy."""
+    """The order of a single element is order_intercept + order_slope |q| for this number of digits of
+    accuracy, q: wave number in 1/L."""
     order_intercept: float = 4.0
     """Order of a single element for `reference_digits` digits of accuracy at the wave number |q| = 0."""
     order_slope: float = 0.49
@@ -27,8 +28,8 @@ class ResolutionSettings:
     """Increase of the order for each further digit of accuracy, per unit of the wave number |q| in 1/L; added
     to `order_per_digit_intercept`."""
     wave_number_of_max_order_per_digit: float = 35.0
-    """Wave number |q|, in 1/L, beyond which the increase of the order for each further digit of accuracy is
-    constant."""
+    """The order grows, for each further digit of accuracy, by an amount that is linear in the wave number |q|
+    up to this |q|, in 1/L, and constant beyond."""
     amplified_wave_safety_factor: float = 1.4
     """Safety factor on the wave number of the most amplified wave in the estimate of the largest |q|."""
     mode_number_offset: float = 0.3

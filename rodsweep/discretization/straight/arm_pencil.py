@@ -31,8 +31,8 @@ class _MeshMatrices(NamedTuple):
     polynomials, (p + 1, p + 1). arm_independent_entries: entries of the first two blocks, which are the same
     for every arm, (n,). weights_over_half_length, weights_times_half_length: Gauss weights divided by, and
     times, half the length of each element, (elements, p). nodal_masses: mass of the nodes, (elements, p + 1).
-    pattern_indices: index in the pattern of each entry of all blocks, (m,). rows, columns: row and column of
-    each entry of the pattern, (nnz,)."""
+    pattern_indices: index in the sparsity pattern of A of each entry of all blocks, (m,). rows, columns: row
+    and column of each entry of the sparsity pattern, (nnz,)."""
 
     interpolation_to_gauss_points: Array
     derivatives_at_gauss_points: Array
@@ -178,8 +178,8 @@ def _pencil_of_coefficients(
 @compiled
 def _add_entries(F: float, coefficients: Array, matrices: _MeshMatrices, A: Array) -> None:
     """Adds the entries of all element blocks, in the order of `pattern_indices`, to A. F: follower force.
-    coefficients: coefficients of the arm, (6, elements, 2 order + 1). A: entries of the pattern, then one for
-    the clamp, (nnz + 1,)."""
+    coefficients: coefficients of the arm, (6, elements, 2 order + 1). A: entries of the sparsity pattern,
+    then one entry for all entries of the clamp, (nnz + 1,)."""
     elements, order = matrices.weights_times_half_length.shape
     value = matrices.interpolation_to_gauss_points
     positions = matrices.pattern_indices

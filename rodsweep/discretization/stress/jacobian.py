@@ -84,9 +84,10 @@ def _write_linear_law_jacobian(  # noqa: PLR0913, PLR0917 - as above
     c: NodalRod,
     m: NodeMatrices,
 ) -> None:
-    """Writes the derivative of the equations with respect to S, for a linear law, into J and tip. fields: E,
-    s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1); arrays of 0 give the part
-    P. J: (unknowns, unknowns). tip: (d, unknowns)."""
+    """Writes the derivative of the equations with respect to the stresses S, for a linear law, into J and
+    tip. fields: strains E, s(S) of the law and velocities V at all nodes, (d, nodes + 1) each. compliance:
+    dE/dS, (d, nodes + 1); arrays of 0 give the part P with respect to Sigma only. J: (unknowns, unknowns).
+    tip: (d, unknowns)."""
     slopes = np.empty((g.dimension, g.dimension, len(m.quadrature_weights)))
     _write_velocity_derivatives(g, fields, slopes, compliance, c)
     _write_rate_derivatives(g, fields, slopes, J, tip, compliance, c, m)
@@ -102,8 +103,9 @@ def _write_velocity_derivatives(
     """Writes the derivatives of the velocities with respect to the stresses of the same node into the nonzero
     blocks of slopes.
 
-    slopes: (d, d, nodes + 1), mobility times the derivative B of ad*_E Sigma; the term with D is not
-    included. fields: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1).
+    slopes: (d, d, nodes + 1), mobility times the derivative B of ad*_E Sigma; the term with the derivative
+    matrix D is not included. fields: strains E, s(S) of the law and velocities V at all nodes, (d, nodes + 1)
+    each. compliance: dE/dS, (d, nodes + 1).
     """
     E, S, _ = fields
     for i in range(slopes.shape[2]):
@@ -129,9 +131,9 @@ def _write_rate_derivatives(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what
     c: NodalRod,
     m: NodeMatrices,
 ) -> None:
-    """Writes the derivative of G with respect to S into J, (unknowns, unknowns), and tip, (d, unknowns).
-    fields: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1). slopes: result
-    of `_write_velocity_derivatives`."""
+    """Writes the derivative of the strain rates G with respect to the stresses S into J, (unknowns,
+    unknowns), and tip, (d, unknowns). fields: strains E, s(S) of the law and velocities V at all nodes, (d,
+    nodes + 1) each. compliance: dE/dS, (d, nodes + 1). slopes: result of `_write_velocity_derivatives`."""
     n = len(m.quadrature_weights) - 1
     E, _, V = fields
     for i in range(n + 1):
@@ -198,7 +200,8 @@ def _write_unknown_velocity_rows(  # noqa: PLR0913, PLR0917 - as above
     m: NodeMatrices,
 ) -> None:
     """Writes the rows of the balance of the k-th unknown velocity component into J, (unknowns, unknowns).
-    fields: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1)."""
+    fields: strains E, s(S) of the law and velocities V at all nodes, (d, nodes + 1) each. compliance: dE/dS,
+    (d, nodes + 1)."""
     size = len(m.quadrature_weights)
     n = len(m.quadrature_weights) - 1
     component = c.unknown_velocity_components[k]

@@ -19,8 +19,8 @@ from ..solving.diagrams import CRUSHED_UNSTABLE_COUNT, UNKNOWN_UNSTABLE_COUNT
 from . import card
 
 PIXEL_ROWS_PER_DRAWN_ROW = 2
-"""Number of computed rows of pixels for one drawn row of the grid. The grid then has about as many rows as a
-picture of the page has pixels in height."""
+"""Number of rows of pixels that are computed for each drawn row of the grid; a drawn row is then about one
+pixel high on the page."""
 MIN_LOG_TICKER_RATIO = 100
 """On a logarithmic axis whose ends have a smaller ratio, Bokeh's ticker places ticks at equal distances, and
 none in the lower part."""
@@ -235,7 +235,7 @@ def log_axis_ticker(low: float, high: float) -> Ticker:
 
 
 def _boundary_columns(x: Any, y: Any, kinds: Iterable[str]) -> dict[str, Any]:
-    """Columns of curves or crossings with the colours of their kinds."""
+    """Columns x, y and colour of a data source of Bokeh, for curves or crossings with the given `kinds`."""
     return {"x": x, "y": y, "colour": [BOUNDARY_COLOURS.get(kind, card.STABLE_COLOUR) for kind in kinds]}
 
 

@@ -61,7 +61,7 @@ class CancellationDelays:
 
 class SolverProcess:
     """One solver process, and the queue of its requests. A request starts the process if it is not running.
-    delays: times until a superseded solve is cancelled, and until a process that does not react to the
+    delays: times, in s, until a superseded solve is cancelled, and until a process that does not react to the
     cancellation is killed; None for the default times. niceness: Unix niceness of the process."""
 
     def __init__(self, delays: CancellationDelays | None = None, niceness: int = 0):
@@ -92,8 +92,8 @@ class SolverProcess:
         on_reply: ReplyCallback,
         progress: ReplyCallback = ignore_progress,
     ) -> None:
-        """Queues a request. An older request with the same key is removed from the queue, or cancelled at the
-        age `min_age_of_cancelled_solve`. on_reply, progress: called with the reply and with messages."""
+        """Queues a request. An older request with the same key leaves the queue, or is cancelled when its
+        solve is `min_age_of_cancelled_solve` old. on_reply, progress: get the reply, progress messages."""
         self.waiting.pop(key, None)
         self.waiting[key] = request, on_reply, progress
         if self.current_request is None:

@@ -172,7 +172,8 @@ class _ValueTextConverter:
         return _array_or_type_text(value) or self._function_or_module_name(value)
 
     def _function_or_module_name(self, value: Any) -> str:
-        """Name of a function or module; a function of this package becomes a kernel. Else TypeError."""
+        """Name of a function or of a module outside this package. A function of this package is also added to
+        `called_kernels`. Raises TypeError for any other value."""
         if hasattr(value, "_defn"):  # an intrinsic of numba
             value = value._defn
         # A called kernel enters with its own code, so that a change there recompiles its callers too.

@@ -155,7 +155,7 @@ def _criticality_class_indices(criticality: Array) -> Array:
 
 def draw_predicted_amplitudes(view: ResultView) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows predicted amplitudes near all Hopf points of the first
-    rods. Raises InputError if nothing can be drawn."""
+    rods with a normal form, as many as there are line colours. Raises InputError if nothing can be drawn."""
     kinds, F, amplitude_coefficient = map(
         view.flattened_by_point, ("criticality", "crossing_F", "amplitude_coefficient")
     )

@@ -95,8 +95,9 @@ def chosen_figure_kind(request: FigureRequest) -> str:
 
 def _default_figure_kind(request: FigureRequest) -> str:
     """Default kind of figure: animation for an output file with the suffix of an animation; amplitudes for
-    several files; shapes or transients for a few points; maps for many lines. Otherwise amplitudes for points
-    along F and for many points, shapes for a few points."""
+    several files. For a few points: transients if the file has transients and no drawable shapes, shapes if
+    the file has shapes. Otherwise maps for many lines of points, amplitudes for points along F and for many
+    points, else shapes."""
     first_view, *other_views = request.views
     if request.output.suffix in FILM_SUFFIXES:
         return "animation"

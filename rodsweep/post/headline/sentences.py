@@ -71,8 +71,8 @@ def threshold_sentence(rod: SingleRodResult) -> str:
 
 
 def _oscillation_end_clause(rod: SingleRodResult) -> str:
-    """Clause on the force at which the first oscillation ends without flutter; empty if there is no such
-    force."""
+    """Clause on the force at which the oscillation that starts at the first onset ends again without flutter;
+    empty if there is no such force."""
     end = oscillation_end_index(rod.column_words("crossings", "crossing_kind"))
     if end is None:
         return ""

@@ -26,7 +26,8 @@ ROW_HEIGHTS = (0.4, 2.4, 1.5, 2.2)
 """Relative heights of the rows of panels: thresholds, largest y of the tip, periods, and modes
 with cycles."""
 ROW_HEIGHTS_WITHOUT_BRANCHES = (0.4, 0.3, 0.1, 2.2)
-"""`ROW_HEIGHTS` of a rod without branches: a sentence and no panel of periods."""
+"""`ROW_HEIGHTS` of a rod without branches: a sentence takes the place of the largest y, and there is no panel
+of periods."""
 MODE_TO_CYCLE_PANEL_WIDTH_RATIO = 0.65
 """Width of the panel of a mode, divided by the width of the panel of a cycle."""
 PARAGRAPH_WIDTH = 162

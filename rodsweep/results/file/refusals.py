@@ -15,7 +15,8 @@ DISK_SPACE_OVER_FILE_SIZE = 3
 """Disk space that a run needs (for the file, the journals and a new copy of the file), divided by the size of
 the file."""
 EXTRA_SPACE_BYTES = 300_000
-"""Additional disk space that a run needs, in bytes, for attributes, coordinates and checkpoints."""
+"""Disk space that a run needs for attributes, coordinates and checkpoints, in bytes, in addition to
+DISK_SPACE_OVER_FILE_SIZE times the values of the points."""
 
 
 def require_disk_space(path: Path, plan: FilePlan) -> None:

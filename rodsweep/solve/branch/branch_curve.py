@@ -192,7 +192,7 @@ class BranchCurve:
         self.are_unit_circle_crossings_explained &= are_complete
 
     def remove_last_cycles(self, count: int) -> None:
-        """Removes the last `count` cycles, and all special points beyond the first removed cycle."""
+        """Removes the last `count` cycles, and the special points beyond the first of these cycles."""
         del self.stored_cycles[-count:]
         self.special_points[:] = [
             point for point in self.special_points if point.index_of_cycle_before < len(self.stored_cycles)

@@ -33,8 +33,9 @@ class BranchSettings:
     """A branch ends where the relative distance of F from the crushing force is this number, because the rod
     at rest is then almost crushed. Branches along F, k1 or taper have this margin."""
     min_coordinate_unit_per_range_length: float = 0.01
-    """Smallest unit of the parameter coordinate in arc lengths, divided by the length of the range. With the
-    coordinate itself as the unit, steps towards gamma3 = 0 become ever shorter and do not reach 0."""
+    """Lower limit of the unit of the parameter coordinate (`min_coordinate_unit` of an `ArcLengthScale`),
+    divided by the length of the range. If the unit were always the modulus of the coordinate, steps towards
+    gamma3 = 0 would become ever shorter and not reach 0."""
     max_cycles_per_diagram_row: int = 500
     """Maximum number of cycles on all branches of one row of a phase diagram."""
 
@@ -59,8 +60,9 @@ class BranchesOfRod:
     are_crossings_proved_complete: bool = False
     curves: tuple[BranchCurve, ...] = field(default_factory=tuple)
     followed_range: tuple[float, float] = (nan, nan)
-    """Smallest and largest value of the parameter up to which branches are followed, in and beyond the range:
-    a branch that enters the range but was not found passes one of these values."""
+    """Smallest and largest value of the parameter up to which branches are followed, inside the range and
+    beyond its ends. A branch that enters the range, but is missing in `curves`, passes one of these two
+    values."""
     folds_beyond_range: tuple[SpecialPoint, ...] = ()
     """Located folds of the branches followed beyond the range."""
 
@@ -153,7 +155,7 @@ def _hopf_branch_starts(
 ) -> tuple[list[HopfBranchStart], list[str]]:
     """Returns (Hopf points `crossings` with their normal forms, messages on Hopf points whose normal form
     failed). is_omega_always_unknown: whether the angular velocity Omega is an unknown for all cycles. unit:
-    smallest unit of the parameter coordinate in arc lengths."""
+    lower limit of the unit of the parameter coordinate (`min_coordinate_unit` of an `ArcLengthScale`)."""
     hopfs = []
     failures = []
     for crossing in crossings.thresholds:

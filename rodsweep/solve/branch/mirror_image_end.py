@@ -43,11 +43,11 @@ def passes_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:
 def end_or_shorter_step_at_mirror_image(
     start: BranchCycle, end: BranchCycle, limits: BranchLimits
 ) -> BranchCycle | BranchEnd | None:
-    """What follows if a branch reaches its mirror image between the cycles `start` and `end`, at a Hopf point
-    (symmetric cycles) or at a symmetric cycle (asymmetric cycles): the end of the branch, or `start` with
-    half the step if `start` is too far from it. The end is a failure if no known Hopf point or symmetry
-    breaking is near. None if the branch does not reach its mirror image. Raises Unsolvable if no shorter step
-    is allowed."""
+    """The end of a branch that reaches its mirror image between the cycles `start` and `end`: at a Hopf point
+    (symmetric cycles) or at a symmetric cycle (asymmetric cycles). If `start` is too far from this point for
+    an extrapolation, the result is `start` with half the step. The end is a failure if no known Hopf point or
+    symmetry breaking is near. None if the branch does not reach its mirror image. Raises Unsolvable if no
+    shorter step is allowed."""
     if start.orbit.is_symmetric:
         return _end_at_hopf_or_shorter_step(start, end, limits) if passes_hopf_point(start, end) else None
     if reaches_symmetric_cycle(start, end, limits.breakings, limits.accuracy):
@@ -144,10 +144,9 @@ def _shrinks_to_hopf_point(start: BranchCycle, hopf: HopfBranchStart, accuracy: 
 
 
 def _has_fold_before_hopf_end(start: BranchCycle, hopf: HopfBranchStart, limits: BranchLimits) -> bool:
-    """Whether a branch has a fold between the cycle `start` and the Hopf point `hopf` where it ends. It has
-    one if the parameter at `start` moves to the side of the Hopf point on which, by the normal form, small
-    cycles exist, that is, away from the Hopf point. False for a cycle of the smallest amplitude, before which
-    no fold is sought."""
+    """Whether a branch has a fold between the cycle `start` and its end at the Hopf point `hopf`: at `start`
+    the parameter moves away from the Hopf point, to the side on which small cycles exist by the normal form.
+    False for a cycle of the smallest amplitude, before which no fold is sought."""
     return (
         not _is_smallest_to_solve(start, limits)
         and start.parameter_per_arc_length * hopf.parameter_direction > 0

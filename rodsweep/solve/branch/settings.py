@@ -19,9 +19,9 @@ class BranchStartSettings:
     between both points."""
     last_cycle_amplitude_per_half_axis: float = 0.2
     """The amplitudes of the cycles between two Hopf points close together form an ellipse or a hyperbola over
-    the parameter. The last cycle of a branch is moved towards its Hopf point, down to this fraction of half
-    the axis of this curve along the amplitude. There the square-root law of one Hopf point alone misses the
-    parameter by 4 % of the distance from the Hopf point."""
+    the parameter. The last cycle of a branch is moved towards its Hopf point, down to this fraction of the
+    semi-axis of this curve in the direction of the amplitude. There the square-root law of one Hopf point
+    alone misses the parameter by 4 % of the distance from the Hopf point."""
     amplitude_of_min_deflection_unit: float = 0.1
     """The unit of deflection of an `ArcLengthScale` is at least the deflection that a cycle of this amplitude
     (largest tip y, in L) has by linear theory."""
@@ -37,17 +37,17 @@ class BranchStartSettings:
     cycles. A larger |a| means that a generalised Hopf point is close; a coarse mesh then displaces folds, or
     has folds that the rod does not have."""
     max_accuracy_if_degenerate: float = 5e-7
-    """Largest relative accuracy of the cycles of a rod with a Hopf point of |a| =
-    `max_nondegenerate_amplitude_coefficient`. For larger |a| the largest accuracy is proportional to 1/a^2,
-    like the distance of the fold from the Hopf point."""
+    """Largest relative accuracy of the cycles of a rod with a Hopf point whose amplitude coefficient a has
+    the modulus `max_nondegenerate_amplitude_coefficient`. For larger |a| the largest accuracy is proportional
+    to 1/a^2, like the distance of the fold from the Hopf point."""
     finest_accuracy_if_degenerate: float = 1e-8
-    """Lower limit of the accuracy that is required because of a large |a|. With this limit, for ten rods at
-    distances of 1e-7 to 1e-3 from a generalised Hopf point, no false fold was found, and all folds farther
-    than 1e-11 F from the Hopf point were found."""
+    """Lower limit of the accuracy that is required because of a large amplitude coefficient |a| of the Hopf
+    point. With this limit, for ten rods at distances of 1e-7 to 1e-3 from a generalised Hopf point, no false
+    fold was found, and all folds farther than 1e-11 F from the Hopf point were found."""
     landau_coefficient_accuracies: tuple[float, ...] = (1e-8, 1e-3)
-    """Relative accuracies of the Landau coefficient of a Hopf point, tried in this order. The first one costs
-    as much as the second (1.9 s for 88 Hopf points of random rods); a mesh that misses the eigenvalue at the
-    first may identify it at the second."""
+    """Relative accuracies of the Landau coefficient of a Hopf point, tried in this order. The accuracy 1e-8
+    costs as much as 1e-3 (1.9 s for 88 Hopf points of random rods); if the mesh for 1e-8 misses the
+    eigenvalue, the mesh for 1e-3 may identify it."""
     relative_frequency_rounding_error: float = 1e-14
     """Relative rounding error of the frequency at a Hopf point, which is computed as a root of the
     determinant D."""
@@ -66,9 +66,9 @@ class BranchErrorSettings:
     by the factor sensitivity/limit. This number is a fifth above the documented limit, because a user
     estimates the sensitivity from cycles."""
     min_deflection_per_parameter_change: float = 0.1
-    """The parameter error at equal deflection is the distance of two branches divided by |d(deflection)/ds|,
-    s: arc length. The divisor is at least this number times |d(parameter)/ds|; otherwise the error would be
-    infinite where the deflection is stationary."""
+    """The parameter error at equal deflection is the distance between the branches on two meshes, divided by
+    |d(deflection)/ds|, s: arc length. The divisor is at least this number times |d(parameter)/ds|; otherwise
+    the error would be infinite where the deflection is stationary."""
     interpolation_safety_factor: float = 2.0
     """Safety factor on interpolated errors."""
     min_error_for_logarithm: float = 1e-16
@@ -84,8 +84,8 @@ class BranchErrorSettings:
     With a ratio of 0.01, measured errors were mostly of this kind."""
     min_newton_tolerance: float = 1e-11
     """Lower limit of the tolerance of Newton's method along a branch, because cycles of strongly unstable
-    branches have larger rounding errors. The tolerance is smaller only if a cycle that is solved alone with
-    the same accuracy also has a smaller tolerance."""
+    branches have larger rounding errors. If a cycle that is solved alone with the same accuracy has a smaller
+    tolerance, the smaller tolerance is used."""
     min_slope_for_equal_parameter_near_zero: float = 0.1
     """Close to the parameter coordinate 0, cycles on finer meshes are solved at an equal parameter, not at an
     equal arc length, if the modulus of the derivative of the scaled parameter coordinate with respect to arc

@@ -72,9 +72,9 @@ class SpectrumSample:
         return None
 
     def scaled_mean_and_product_of_next_gaps(self) -> tuple[tuple[float, float], tuple[float, float]] | None:
-        """Returns (tau (r - (a + b)/2), tau^2 (r - a) (r - b)), each with its derivative with respect to p,
-        tau: `relaxation_time`. r: real part of the leading eigenvalue. a, b: the two eigenvalues after the
-        leading eigenvalue or pair; None unless a and b are both real or a complex pair.
+        """Returns (tau (r - (a + b)/2), tau^2 (r - a) (r - b)), each with its derivative with respect to the
+        path variable p, tau: `relaxation_time`. r: real part of the leading eigenvalue. a, b: the two
+        eigenvalues after the leading eigenvalue or pair; None unless a and b are both real or a complex pair.
 
         Both products are positive and smooth where a and b change between real and complex; r - a is not.
         """

@@ -29,7 +29,8 @@ class BautinSettings:
     """First secant step along the Hopf curve; each parameter's range has length 1."""
     secant_tolerance: float = 1e-12
     """The secant method stops when the step is at most this number, or at most the error caused by the error
-    of c; each parameter's range has length 1."""
+    of c (cubic coefficient of the normal form, Re c = 0 at the point); each parameter's range has length
+    1."""
     edge_tolerance: float = 1e-12
     """A point lies on an end of a range if its distance, as a fraction of the range, is below this."""
     min_loop_points: int = 5

@@ -105,7 +105,8 @@ def maximum_propagator_norm(
 
 
 def _squared_norms_and_curvature_bounds(propagator: Propagator, times: Array) -> tuple[Array, Array]:
-    """Returns (|exp(L t)|^2, curvature bounds c) at `times`, in tau2, (times,) each, in batches."""
+    """Returns (|exp(L t)|^2, c) at `times`, in tau2, (times,) each, computed in batches. c: bound of the
+    curvature, f'' >= -c for f = |exp(L t) v|^2 with any |v| = 1."""
     parts = [
         propagator.squared_norms_and_curvature_bounds(part)
         for part in np.array_split(times, len(times) // NORM_MAXIMUM_SETTINGS.times_per_batch + 1)

@@ -200,13 +200,13 @@ def _end_of_growth_and_excess(
 ) -> tuple[float, float]:
     """Returns (end, excess). end: a time after which |exp(L t)| does not exceed its earlier values. excess:
     relative amount by which a later norm may nevertheless exceed these values. earliest_end: earliest end, in
-    tau2. decay_exponent: the other modes are negligible once they are exp(-decay_exponent) times the leading
-    modes.
+    tau2. decay_exponent: the modes beyond the leading one or pair are negligible once they are
+    exp(-decay_exponent) times the leading modes.
 
     Since |exp(L (t + r))| <= |exp(L t)| |exp(L r)|, any time with |exp(L t)| < 1 is an end. Near a threshold
     such a time is very late. But once the leading pair dominates, the motion repeats itself and shrinks every
-    half period. If the other modes contribute r at that time, no later norm exceeds all earlier norms by more
-    than the fraction 2 r.
+    half period. If the other modes contribute the fraction e of the norm at that time, no later norm exceeds
+    all earlier norms by more than the fraction 2 e.
     """
     w = propagator.w[: len(propagator.generator)]
     leading_count = 2 if w[0].imag else 1

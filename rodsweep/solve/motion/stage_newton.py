@@ -134,7 +134,7 @@ def test_newton_convergence(  # noqa: PLR0913, PLR0917 - PETSc's signature
     snes: int, iteration: int, x: float, dx: float, size: float, reason: int, context: int
 ) -> int:
     """Stopping test for PETSc's Newton method, called after every iteration: writes the SNESConvergedReason
-    to the address `reason`. iteration: number of iterations. dx, size: 2-norms of step and residual."""
+    to the address `reason`. iteration: their number. x: not used. dx, size: 2-norms of step and residual."""
     c = record_at(context, CONTEXT_DTYPE)
     reason_array = numba.carray(as_void_pointer(reason), (1,), np.int32)
     reason_array[0] = ITERATING

@@ -80,7 +80,8 @@ class PointGroups:
         return (missing[index] & (positions < self.shape[self.axis])).sum(axis=1)
 
     def unsolved_ranges(self, missing: Sequence[IndexRange]) -> list[IndexRange]:
-        """Ranges of the numbers of groups with missing points; missing: ranges of flat indices."""
+        """Ranges of group numbers: the groups with at least one missing point. missing: ranges of flat
+        indices of the missing points."""
         if index_count(missing) == math.prod(self.shape):
             return [(0, self.count)]
         missing_points = IndexSet(missing)

@@ -52,7 +52,7 @@ def criticality_along(
     plane: "ParameterPlane", traced: "TracedCurves[BoundaryCurve]", accuracy: float
 ) -> "list[CurveCriticality]":
     """Criticality along each boundary curve of `traced`; NaN along curves that are not Hopf curves. accuracy:
-    relative accuracy of the linear results."""
+    relative accuracy of eigenvalues and thresholds."""
     from ...solve.hopf.bautin_points import CurveCriticality, curve_criticality
 
     return [
@@ -70,8 +70,8 @@ def generalised_hopf_curves(
     accuracy: float,
 ) -> list[FilledVariable]:
     """Curves of generalised Hopf points along a third parameter, as variables of the file. criticalities:
-    criticality of each boundary curve of the plane. accuracy: relative accuracy of the linear results.
-    third_axis: name and values of the third parameter.
+    criticality of each boundary curve of the plane. accuracy: relative accuracy of eigenvalues and
+    thresholds. third_axis: name and values of the third parameter.
     """
     from ...determinant.parameter_plane import PlaneAxis
     from ...solve.hopf.bautin_curves import (

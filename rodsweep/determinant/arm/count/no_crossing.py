@@ -57,7 +57,7 @@ class LineNode(NamedTuple):
     """The node w0 of a disc, with values of the middle arm. w: w0. D: D(w0) exp(-S), S = `log_scale`.
     log_derivative: D'/D, with the eigenvalues divided out. divided_out_indices: indices of the known
     eigenvalues that are divided out, (k,). dominant_exponent_and_slope: (Phi, dPhi/dw), Phi: exponent of the
-    dominant wave, if the function h that is divided out (see the module) contains this wave; else (0, 0)."""
+    dominant wave, if the factor exp(h) that is divided out of D contains this wave; else (0, 0)."""
 
     w: complex
     D: complex

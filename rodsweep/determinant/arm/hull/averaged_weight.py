@@ -39,10 +39,10 @@ class TrialWeight(NamedTuple):
 
 @compiled
 def regions_from_averaged_weights_of_arms(F: Array, u: Array, coefficients: Array) -> Array:
-    """`regions_from_averaged_weights` of n arms: constants (a, c) of a region that contains all eigenvalues
-    (`hull.hull`), for each arm and each trial weight, (n, trials, 2); inf for an arm without c2 > 0 and g > 0
-    everywhere. F: forces, (n,). u: points of the arms, (points,). coefficients: `LocalCoefficients` at these
-    points, (6, n, points)."""
+    """`regions_from_averaged_weights` of n arms: constants (a, c) of a region that contains all eigenvalues,
+    Re w <= a n - (1 - c) n^2, |Im w| <= a n + c n^2 for some n >= 0, for each arm and each trial weight, (n,
+    trials, 2); inf for an arm without c2 > 0 and g > 0 everywhere. F: forces, (n,). u: points of the arms,
+    (points,). coefficients: `LocalCoefficients` at these points, (6, n, points)."""
     regions = np.full((len(F), AVERAGED_WEIGHT_SETTINGS.trial_region_count, 2), math.inf)
     for arm in range(len(F)):
         if (coefficients[1, arm] > 0).all() and (coefficients[5, arm] > 0).all():
@@ -55,11 +55,11 @@ def regions_from_averaged_weights_of_arms(F: Array, u: Array, coefficients: Arra
 
 @compiled
 def regions_from_averaged_weights(u: Array, coefficients: Array, F: float, only_smallest: bool) -> Array:
-    """Constants (a, c) of a region that contains all eigenvalues (`hull.hull`), for each trial weight,
-    (trials, 2); inf if a trial gives no bound. u: points of an arm from clamp to tip, (points,), two at a
-    jump. coefficients: `LocalCoefficients` at the points, (6, points), with c2 > 0 and g > 0. F: force.
-    only_smallest: whether a trial may end with inf as soon as a reaches the smallest a so far of a region
-    with c = 0."""
+    """Constants (a, c) of a region that contains all eigenvalues, Re w <= a n - (1 - c) n^2, |Im w| <= a n +
+    c n^2 for some n >= 0, for each trial weight, (trials, 2); inf if a trial gives no bound. u: points of an
+    arm from clamp to tip, (points,), two at a jump. coefficients: `LocalCoefficients` at the points, (6,
+    points), with c2 > 0 and g > 0. F: force. only_smallest: whether a trial may stop, with the result inf,
+    once its a is not below the smallest a of an earlier trial with c = 0."""
     regions = np.full((AVERAGED_WEIGHT_SETTINGS.trial_region_count, 2), math.inf)
     _, c2, c3, gamma2, gamma3, _ = coefficients
     loads = abs(F) * np.sqrt(c2 * c3 * gamma3 / gamma2)
@@ -114,8 +114,8 @@ def _weight_before_averaging(points: TrialPoints, i: int, factor: float) -> floa
 def _reaches_a_squared_limit_at(
     source: int, points: TrialPoints, weight: TrialWeight, trial: tuple[float, float, float, float]
 ) -> bool:
-    """Whether a^2 of both regions of a trial weight reaches the limit of a^2 already at the point number
-    `source` of the arm. Other arguments: as in `_write_regions_of_trial`."""
+    """Whether the constants a of both regions of `_write_regions_of_trial` reach their limit already at the
+    point number `source` of the arm. Other arguments: as in `_write_regions_of_trial`."""
     i = source
     while points.arm_point_indices[i] != source:  # added points shift the points of the arm
         i += 1
@@ -130,9 +130,10 @@ def _write_regions_of_trial(
     weight: TrialWeight,
     trial: tuple[float, float, float, float],
 ) -> int:
-    """Writes two regions that contain all eigenvalues, each as its constants (a, c) of `hull.hull`, from a
-    trial weight into `regions`, (2, 2). In the first region (t - alpha) nu is bounded by theta(0) = 0, in the
-    second by the rotational drag. Returns the index of the point of the arm that determines a.
+    """Writes two regions that contain all eigenvalues, each by its constants (a, c) of `hull.hull`, from a
+    trial weight t and its average alpha into `regions`, (2, 2). In the first region (t - alpha) nu is bounded
+    by theta(0) = 0, in the second by the rotational drag. Returns the index of the point of the arm that
+    determines a.
 
     trial: (force F, factor f, half-width h of the window, limit of a^2). If a^2 of both regions reaches the
     limit, `regions` is left unchanged.
@@ -174,9 +175,9 @@ def _write_regions_of_trial(
 def _weight_and_squared_norms(
     points: TrialPoints, weight: TrialWeight, i: int, trial: tuple[float, float, float, float]
 ) -> tuple[float, float, float]:
-    """Returns (alpha, clamp, drag) at point number i: the averaged weight, and a^2 of the two regions of
-    `_write_regions_of_trial`, bounded by theta(0) = 0 and by the rotational drag. Other arguments: as in
-    `_write_regions_of_trial`."""
+    """Returns (alpha, clamp, drag) at point number i: alpha is the averaged weight; clamp and drag are the
+    values of a^2 that this point needs for the two regions of `_write_regions_of_trial`, in which theta is
+    bounded by theta(0) = 0 or by the rotational drag. Other arguments: as in `_write_regions_of_trial`."""
     nu, c2, c3, gamma2, gamma3, g = points.coefficients[:, i]
     F, factor, h, _ = trial
     alpha, slope = _averaged_weight_and_log_slope(points, weight, i, h)

@@ -6,8 +6,8 @@ import scipy  # loads a subpackage at its first use
 from ....arrays import Array
 
 SEGMENTS_BETWEEN_SHAPES = 8
-"""Number of straight segments that are drawn between two shapes. With 32 shapes per return of the tip, two
-segments enclose an angle of 1.4 degrees on average, and of 12 degrees at sharp turns."""
+"""Number of straight segments that are drawn between two shapes. With 32 shapes on a closed path of the tip,
+two segments enclose an angle of 1.4 degrees on average, and of 12 degrees at sharp turns."""
 
 
 def smooth_tip_path(tips: Array, is_closed: bool) -> Array:

@@ -92,8 +92,8 @@ def _draw_bautin_curves(axes: Axes, view: ResultView, parameters: PlaneParameter
 def hopf_curve_parts_by_criticality(
     view: ResultView, curve: int, parameters: PlaneParameters
 ) -> list[tuple[int, Array]]:
-    """(sign of Re c, points, (n, 2)) of the parts, between generalised Hopf points, of the Hopf curve with
-    the number `curve`."""
+    """(sign of Re c, points) of the parts, between generalised Hopf points, of the Hopf curve with the number
+    `curve`. points: values of both `parameters`, in their order, (n, 2)."""
     variables = view.variables
     indices = np.flatnonzero(variables["curve_number"] == curve)
     bautin = np.flatnonzero(variables["bautin_curve"] == curve)

@@ -201,8 +201,8 @@ def _infinite_values_clause(view: ResultView, names: list[str]) -> str:
 
 def _first_middle_and_last_line(table: Array) -> list[int]:
     """Indices of three lines: the first, the last, and between them the line whose mean force is nearest to
-    the mean of theirs; all lines if there are fewer. table: forces, (lines, 3, n), as from
-    `_first_force_table`."""
+    the average of the mean forces of these two; all lines if there are fewer than three. table: forces,
+    (lines, 3, n), as from `_first_force_table`."""
     last = len(table) - 1
     if last < 2:
         return list(range(len(table)))

@@ -39,9 +39,9 @@ class BranchSegment:
         return self.end.predicted_orbit(-self._length_along_end_tangent * (1 - length / self.length))
 
     def predicted_fold_length_and_slope(self) -> tuple[float, float]:
-        """Returns (arc length, slope of `parameter_per_arc_length` there) of the fold of the polynomial
-        through the cycles up to `end`; raises Unsolvable if it has not exactly one fold between `start` and
-        `end`."""
+        """Returns (arc length from `start`, slope of `parameter_per_arc_length` there) of the fold of the
+        polynomial through the cycles up to `end`; raises Unsolvable if it has not exactly one fold between
+        `start` and `end`."""
         ends = (-self._length_along_end_tangent, 0.0)
         rate = parameter_change_polynomial(self.end.tangent, self.end.earlier_cycles, ends).deriv()
         roots = rate.roots()

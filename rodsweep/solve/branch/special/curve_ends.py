@@ -17,7 +17,8 @@ class SpecialCurveEndSettings:
     """Points at most this far from an edge of the plane lie on the edge; each axis has length 1."""
     zero_margin_tolerance: float = 1e-10
     """A margin (distance of a point from a reason for the curve's end, see `END_REASON_BY_MARGIN`) is 0
-    within this tolerance; also the tolerance of the position of this zero, divided by the step length."""
+    within this tolerance; also the tolerance of the position at which a margin becomes 0, as a fraction of
+    the step length."""
     crushing_margin: float = 1e-3
     """A curve ends where the relative distance of F from the force that crushes the arm is this number."""
     step_tolerance_before_crushing: float = 1e-6
@@ -25,8 +26,8 @@ class SpecialCurveEndSettings:
     min_amplitude: float = 0.01
     """A curve ends, at an extrapolated Hopf point, where the largest tip y, in L, is below this number."""
     min_sine_at_resonance: float = 0.2
-    """A lost curve of torus points has ended at a resonance (the complex pair becomes real) if the sine of
-    the angle between multiplier and real axis is below this number."""
+    """A curve of torus points that cannot be followed further has ended at a resonance (the complex pair
+    becomes real) if the sine of the angle between its multiplier and the real axis is below this number."""
 
 
 SPECIAL_CURVE_END_SETTINGS = SpecialCurveEndSettings()
@@ -44,7 +45,7 @@ distances from the edges of the plane."""
 
 def are_identical_curves(first: SpecialPointCurve, second: SpecialPointCurve, line_axis: PlaneAxis) -> bool:
     """Whether the curves `first` and `second` are identical: their kinds agree, and their ends coincide
-    within a tolerance. line_axis: axis of the parameter along a row."""
+    within a tolerance. line_axis: axis of the parameter that varies along a row of the diagram."""
     pairs = zip(_curve_end_positions(first, line_axis), _curve_end_positions(second, line_axis), strict=True)
     distances = (abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
     return first.kind == second.kind and all(
@@ -63,8 +64,9 @@ def leaves_range_along_rows(curve: SpecialPointCurve, line_axis: PlaneAxis) -> b
 
 
 def _curve_end_positions(curve: SpecialPointCurve, line_axis: PlaneAxis) -> list[tuple[float, float]]:
-    """Both ends of a curve, each as (row coordinate, position along the row), from 0 to 1, in ascending
-    order. line_axis: axis of the parameter along a row."""
+    """Both ends of a curve, each as (row coordinate, position on `line_axis`), both from 0 to 1, in ascending
+    order. Row coordinate: position on the axis of the parameter that is constant on a row of the diagram.
+    line_axis: axis of the parameter that varies along a row."""
     ends = curve.points[0], curve.points[-1]
     # Ordered, because two traces of one curve may run in opposite directions.
     return sorted((p.row_coordinate, line_axis.scaled_coordinate(p.parameter_value)) for p in ends)

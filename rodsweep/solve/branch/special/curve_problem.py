@@ -46,7 +46,8 @@ CURVE_STEP_CONTROL = StepControl(
 @dataclass(frozen=True, slots=True)
 class SpecialCurveProblem(CurvePointSolver):
     """Curves of folds or torus points in a plane, as a problem of `follow_curve`.
-    first_step_sign_in_row_parameter: 1 or -1, sign of the first step in the row parameter."""
+    first_step_sign_in_row_parameter: 1 or -1, sign of the first step in the row parameter, which is constant
+    on a row of the diagram."""
 
     first_step_sign_in_row_parameter: float = 1.0
 

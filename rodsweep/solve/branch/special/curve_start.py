@@ -27,7 +27,7 @@ class CurveStartSettings:
 
     element_order_ratio: float = 0.62
     """Ratio of the order of the first mesh on a curve to the order of the mesh on which the special point was
-    located to 1e-9."""
+    located with a relative accuracy of 1e-9."""
     time_interval_count_ratio: float = 0.5
     """Ratio of the number of time intervals of the first mesh on a curve to the number on the mesh on which
     the special point was located."""

@@ -26,15 +26,15 @@ MAX_CURVE_AND_ROW_STAGES = 8
 """Maximum number of stages of a diagram: stages of curves and stages of rows alternate, and each finds fewer
 branches than the stage before. `show` names the rows with cycles that are not reached."""
 WorkItemResults = Mapping[int, dict[str, Array]]
-"""Results of work items, by number; the result of a row has the variables of the row by name, or is empty."""
+"""Results of work items, by number; of a row: its variables by name, empty if the row failed."""
 SpecialPointsOfRowFunction = Callable[[int, dict[str, Array]], list[RowSpecialPoint]]
-"""Function from (index of a row, its variables) to the folds and torus points of the row."""
+"""Function from (index of a row, its variables by name) to the folds and torus points of the row."""
 
 
 @dataclass(frozen=True, slots=True)
 class RowsWithDetachedBranches(RowWorkItems):
-    """Rows that are solved again, because a curve of folds or torus points crosses the row where no branch of
-    the row has such a point. unexplained_crossings: all such crossings known so far, by index of the row."""
+    """Diagram rows that are solved again, because a curve of folds or torus points crosses the row where no
+    branch has such a point. unexplained_crossings: all such crossings known so far, by index of the row."""
 
     done_item_phrase: ClassVar[str] = (
         "row solved again with branches found from curves of folds and torus points"
@@ -55,11 +55,11 @@ DiagramStage = SpecialCurveTracer | RowsWithDetachedBranches | FoldsBeyondRange
 
 @dataclass(frozen=True, slots=True)
 class DiagramStages:
-    """The stages of the module, for one diagram. first_stage: traces the curves from the points of all rows.
-    special_points_of_row: a `SpecialPointsOfRowFunction`. axis_extended_beyond_range: axis of the parameter
-    along the rows, extended as far as branches are followed beyond the range; None if curves end at the
-    range. values_of_rows_leaving_range: row parameter of each row with a branch that leaves or enters the
-    range."""
+    """The stages of the search of the module docstring, for one diagram. first_stage: traces the curves from
+    the points of all rows. special_points_of_row: a `SpecialPointsOfRowFunction`. axis_extended_beyond_range:
+    axis of the parameter along the rows, extended as far as branches are followed beyond the range; None if
+    curves end at the range. values_of_rows_leaving_range: row parameter of each row with a branch that leaves
+    or enters the range."""
 
     first_stage: SpecialCurveTracer
     special_points_of_row: SpecialPointsOfRowFunction
@@ -215,7 +215,7 @@ class DiagramStages:
 def _rows_solved_again(
     stages: Sequence[DiagramStage], results: WorkItemResults
 ) -> dict[int, dict[str, Array]]:
-    """Variables of all rows that were solved again, by index of the row: the last valid result."""
+    """Variables of all rows that were solved again, by index of the row: the last result without failure."""
     variables_by_row: dict[int, dict[str, Array]] = {}
     for stage in stages:
         if isinstance(stage, RowsWithDetachedBranches):

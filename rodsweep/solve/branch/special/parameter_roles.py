@@ -163,7 +163,8 @@ class ParameterRoles:
         return row_ratio <= PARAMETER_ROLE_SETTINGS.max_row_parameter_slope_to_exchange * line_ratio
 
     def _min_coordinate_unit(self, axis: PlaneAxis) -> float:
-        """Smallest unit of the coordinate of the parameter of `axis`."""
+        """Lower limit of the unit of arc length in which the coordinate of the parameter of `axis` is
+        measured (`min_coordinate_unit` of an `ArcLengthScale`)."""
         parameter = PARAMETERS[axis.parameter_name]
         # The limits may be values of a stiffness, whose coordinate is its inverse.
         length = abs(parameter.coordinate(axis.stop) - parameter.coordinate(axis.start))

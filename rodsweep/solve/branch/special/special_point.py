@@ -28,9 +28,9 @@ class SpecialPointSettings:
     Rounding errors of the test function, which differ between meshes, are of this size: up to 2e-10."""
     tip_y_of_doubled_fold_error: float = 0.02
     """Largest tip y, in L, at which the error of the test function of a fold is twice
-    `test_function_correction_tolerance`; at smaller amplitudes it grows in inverse proportion, because the
-    whole state has the relative tolerance of the cycles. Without this growth folds at a relative distance of
-    2e-6 from a generalised Hopf point had errors of 8 times their estimates."""
+    `test_function_correction_tolerance`; at smaller amplitudes the error grows in inverse proportion to the
+    amplitude, because the whole state has the relative tolerance of the cycles. Without this growth folds at
+    a relative distance of 2e-6 from a generalised Hopf point had errors of 8 times their estimates."""
     test_function_rounding_error: float = 1e-11
     """Error of the multiplier at a symmetry breaking or period doubling, and of the stretch h1 where the
     model ends (h1 = 0): ten times the relative tolerance of the cycles."""
@@ -78,7 +78,7 @@ class SpecialPointSettings:
     """Order in time assumed for the error that is left on the finer of two meshes, divided by the number of
     stages. With this number, and with the measured decay in space of at least
     `log_space_error_decay_per_order`, the errors of 90 special points of random rods were at most 1.1 times
-    the assumed ones, and 0.4 times in the median."""
+    the assumed errors, and 0.4 times in the median."""
     min_mesh_difference_per_accuracy: float = 0.02
     """Smallest difference between special points on two meshes from which errors are estimated, divided by
     the accuracy: a tenth of `first_mesh_accuracy_ratio`. Where errors change their sign, a smaller difference
@@ -94,9 +94,10 @@ class SpecialPointSettings:
     max_prediction_error_without_fold: float = 1e-4
     """Near a cycle with a nontrivial multiplier of 1 within its error, it is uncertain whether two successive
     cycles lie on one branch, if between them the parameter turns back or the number of real multipliers above
-    1 changes by an odd number. They are then taken as cycles of one branch only if the prediction error of
-    the second cycle is at most this number: a fifth of the usual error, so that one halving of the step
-    suffices. Between small cycles of two Hopf points close together, errors of 8e-3 were seen."""
+    1 changes by an odd number. The two cycles are then taken as cycles of one branch only if the prediction
+    error of the second cycle is at most this number: a fifth of the usual target of this error, so that one
+    halving of the step suffices. Between small cycles of two Hopf points close together, errors of 8e-3 were
+    seen."""
     max_parameter_change_if_located_twice: float = 1e-6
     """Two special points of a rod are the same point only if the relative difference of their parameters,
     minus the sum of their errors, is at most this number; a point on a curve over two parameters has an error

@@ -156,8 +156,8 @@ class ModesAlongPath:
 
 
 def _needed_mode_count(spectrum: Spectrum) -> int:
-    """Number of modes to be computed: two more than the counted unstable modes, or than the growing modes
-    found if these are more."""
+    """Number of modes to be computed: two more than the counted number of unstable modes, or than the number
+    of eigenvalues with Re w > 0 in `spectrum` if this number is larger."""
     growing_count = int((spectrum.eigenvalues.real > 0).sum())
     return 2 + max(spectrum.unstable_count, growing_count)
 

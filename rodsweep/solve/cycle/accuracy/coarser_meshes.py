@@ -155,12 +155,14 @@ class CoarserMeshes:
         return errors
 
     def _time_interval_count_ratio(self, mesh: OrbitMesh) -> float:
-        """The `solved_duration_in_full_intervals` of `mesh`, divided by that of the coarse mesh."""
+        """Ratio of the numbers of time intervals of `mesh` and of the coarse mesh, where the two last
+        intervals, of half length, count as one."""
         return mesh.solved_duration_in_full_intervals / self.coarse_mesh.solved_duration_in_full_intervals
 
 
 def _pessimistic_log_space_error_decay(orbit: Orbit) -> float:
-    """Pessimistic decrease of ln(error) in space per order, from the coefficients of an orbit."""
+    """Pessimistic estimate of how much ln(error in space) decreases when the order of the elements grows by 1
+    (positive), from the decay of the coefficients of an orbit."""
     min_decay = (
         COARSER_MESH_SETTINGS.pessimistic_error_to_coefficient_decay_ratio
         * coefficient_tails_of(orbit).log_coefficient_decay_per_order

@@ -65,11 +65,11 @@ def measured_mesh_error_calibration(
     """Calibration of the mesh of the orbit `solved`, with errors measured on two finer meshes;
     raises Unsolvable.
 
-    accuracy: requested relative accuracy. previous: calibration at a nearby orbit, on any mesh, for the
-    convergence rates (`mesh_error_calibration`) and lower limits of errors on the same mesh; None if the
-    rates are estimated from the coefficients of the orbit and the number of stages. If the errors in space of
-    `previous` can be reused, only the errors in time are measured again, unless the resulting error estimate
-    exceeds the accuracy.
+    accuracy: requested relative accuracy. previous: calibration at a nearby orbit, on any mesh, from which
+    the convergence rates follow (`mesh_error_calibration`) and, if its mesh is the same, lower limits of the
+    errors; None: the rates are estimated from the coefficients of the orbit and the number of stages. If the
+    errors in space of `previous` can be reused, only the errors in time are measured again, unless the
+    resulting error estimate exceeds the accuracy.
     """
     mesh = mesh_of_orbit(solved.orbit)
     cycle = ComparedCycle(solved)

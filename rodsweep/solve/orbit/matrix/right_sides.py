@@ -72,7 +72,8 @@ def write_parameter_derivative_of_rates(
 def write_stage_residuals(points: Array, duration: float, p: OrbitEquations, out: Array) -> None:
     """Writes the residuals h F(x_i) - sum_j d_ij M x_j of all stages into `out`, (K, s, n).
 
-    points: states x_j at the start and at all stages, in order, (1 + K s, n). duration: total length of the
+    K: intervals of s stages. h: length of an interval. j: the start and the stages of the interval of stage
+    i. points: states at the start and at all stages, in order, (1 + K s, n). duration: total length of the
     intervals, in tau2. p: equations F, differentiation matrix d and mass matrix M.
     """
     K, s, n = out.shape
@@ -134,7 +135,7 @@ def write_right_sides_of_variations(
     values: Array, p: OrbitEquations, partials: ParameterDerivatives, variations: Array, columns: Array
 ) -> None:
     """Writes the derivatives of the residuals by `write_stage_residuals` along k variations of an orbit into
-    `columns`, (K, s, k, n).
+    `columns`, (K, s, k, n); K: intervals of s stages.
 
     values: values of the orbit, (N,). p: equations of the orbit. variations: variations of the values and of
     the parameter of `partials`, (k, N + 1).

@@ -128,8 +128,8 @@ class NewtonWorkspace:
 
     @contextmanager
     def further_work_limit(self, further_work: float) -> Iterator[None]:
-        """Context in which at most `further_work` multiplications are done; a lower limit of the work stays
-        in force."""
+        """Context in which at most `further_work` more multiplications are done; the limit of `limit_work`
+        stays in force if it allows fewer. A matrix beyond the limit raises WorkLimitReached."""
         previous_max_work = self._max_work
         self._max_work = min(previous_max_work, self._work + further_work)
         try:

@@ -27,9 +27,9 @@ class EigenvaluePredictionSettings(KernelConstants):
     """Two real eigenvalues are extrapolated as a pair if, by their slopes, they meet within this many steps
     of the path, ahead or behind."""
     undecided_squared_difference_ratio: float = 0.25
-    """If the predicted squared half difference changes sign, or its magnitude is below this fraction of the
-    magnitude at the last point, the determinant D is evaluated to find whether the two eigenvalues are real
-    or complex."""
+    """If the predicted square of half the difference of two eigenvalues changes sign, or its magnitude is
+    below this fraction of the magnitude at the last point, the determinant D is evaluated to find whether the
+    two eigenvalues are real or complex."""
 
 
 EIGENVALUE_PREDICTION_SETTINGS = EigenvaluePredictionSettings()
@@ -143,12 +143,12 @@ def _half_sum_and_squared_half_difference(
 def _predict_pair(
     track: FollowedEigenvalues, i: int, pair: tuple[int, int], steps: tuple[float, float]
 ) -> tuple[complex, complex, bool]:
-    """Returns (guess, guess, undecided) for the two eigenvalues `pair` at point i; the guess with the larger
-    real part or frequency comes first.
+    """Returns (first guess, second guess, undecided) for the eigenvalues with the two indices `pair` at point
+    i of a path; the guess with the larger real part or frequency comes first.
 
     undecided: whether D must show if the two eigenvalues are real or a complex pair. Both guesses are then
-    half the sum. steps: distances in p from the point before the last to the last, and from the last to point
-    i.
+    half the predicted sum of the two. steps: distances in p from point i - 2 to point i - 1, and from point i
+    - 1 to point i.
     """
     k, j = pair
     # Where two real eigenvalues meet and become a pair, each has a square root in p; middle and squared half

@@ -38,7 +38,7 @@ class SquareRootLaw:
     hopf_force: float
     """Force F** of the Hopf point, in k3/L^2."""
     coefficient: float
-    """Coefficient a, in L."""
+    """Coefficient a of the law y = a sqrt(|F - F**|/|F**|), in L."""
     is_above: bool
     """Whether the law holds at F > F**; otherwise at F < F**."""
     end_force: float

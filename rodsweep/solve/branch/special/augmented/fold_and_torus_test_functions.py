@@ -71,7 +71,9 @@ class FoldTestFunction:
         self.null_vectors: Array = tangent / (rates @ border)
 
     def value(self, orbit: Orbit) -> float:
-        """The test function at an orbit, from the last corrected tangent."""
+        """The test function at an orbit, from the last corrected tangent: derivative of the scaled parameter
+        coordinate with respect to arc length, divided by the scaled deflection if `has_small_cycles`; 0 at a
+        fold."""
         parameter_rate = float(self.null_vectors[-1] / self.matrix.scale.coordinate_unit)
         # Near a Hopf point the derivative is proportional to the deflection; their ratio stays regular.
         return (
@@ -177,8 +179,8 @@ def _real_and_imaginary(vector: Array) -> Array:
 
 
 def multiplier_pair_nearest_unit_circle(matrix: BorderedMatrix) -> complex | None:
-    """Complex multiplier nearest to the unit circle, over the solved time interval of the orbit of `matrix`;
-    None if all multipliers are real."""
+    """The complex multiplier nearest to the unit circle, of the map over the solved part of the period of the
+    orbit of `matrix`; None if all multipliers are real."""
     multipliers = matrix.multipliers_over_solved_time_interval
     pairs = multipliers[
         np.abs(multipliers.imag) > SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(multipliers)
