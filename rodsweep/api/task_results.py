@@ -25,7 +25,7 @@ from .dataset import in_layout_order, view_of_dataset, with_arm_indexes, with_ch
 
 
 class Result(Protocol):
-    """A result in the two forms that an `Answer` needs: a Dataset and a view."""
+    """A result in the two forms that an `Answer` needs: an xarray Dataset and a `ResultView`."""
 
     @property
     def dataset(self) -> xr.Dataset:

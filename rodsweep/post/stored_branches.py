@@ -73,7 +73,7 @@ class StoredBranch:
 
     @property
     def starts_outside_range(self) -> bool:
-        """Whether the branch begins at an end of the range and continues beyond this end."""
+        """Whether the branch begins at an end of the range; it then continues beyond this end."""
         return self.special_points[0].kind == "end"
 
     @property

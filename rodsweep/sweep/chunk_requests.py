@@ -26,7 +26,7 @@ ANSWER_TAG = 72
 STOP_TAG = 73
 """MPI tag of a stop request, the name of the signal."""
 PROGRESS_TAG = 74
-"""MPI tag of a report of progress within a long point, a `SolvePosition`."""
+"""MPI tag of a report of progress in a point that takes long, a `SolvePosition`."""
 POLL_SECONDS = 2e-3
 """Seconds between two polls for messages by the thread of the first rank. Each poll takes 20 microseconds or
 more from the solve on that rank."""
@@ -52,8 +52,8 @@ class ChunkServer:
     def __init__(
         self, ranks: Ranks, queue: ChunkQueue, stop: StopRequest, show_position: Callable[[str, float], None]
     ):
-        """show_position: function (text on the progress of a long point, sum of the completed fractions of
-        all unfinished points) that displays the progress."""
+        """show_position: function (text on the progress in a point that takes long, sum of the completed
+        fractions of all unfinished points) that displays the progress."""
         self.ranks = ranks
         self.queue = queue
         self.stop = stop
@@ -66,7 +66,7 @@ class ChunkServer:
         """Other ranks that have not yet received NO_WORK_LEFT."""
         self.mpi_status = ranks.MPI.Status()
         self.positions: dict[int, SolvePosition] = {}
-        """Latest reported progress within a long point, by rank."""
+        """Latest reported progress in a point that takes long, by rank."""
         self.serving_lock = threading.Lock()
         self.last_served = 0.0
         """Time of the last poll for messages between two points, on the monotonic clock, in s."""
@@ -102,8 +102,8 @@ class ChunkServer:
             self._receive_positions()
 
     def report_position(self, position: SolvePosition) -> None:
-        """Displays the progress of the first rank within a long point: `position`, its text and completed
-        fraction."""
+        """Displays the progress of the first rank in a point that takes long: `position`, its text and
+        completed fraction."""
         self.positions[0] = position
         self.show_position(position.text, self._sum_of_done_fractions())
 
@@ -153,7 +153,7 @@ class ChunkServer:
                     self.working_ranks.discard(rank)
 
     def _receive_positions(self) -> None:
-        """Receives all waiting reports of progress within long points."""
+        """Receives all waiting reports on the progress of long solves."""
         comm = self.ranks.comm
         MPI = self.ranks.MPI
         while comm.Iprobe(source=MPI.ANY_SOURCE, tag=PROGRESS_TAG, status=self.mpi_status):
@@ -213,7 +213,7 @@ class ChunkClient:
         return chunk
 
     def report_position(self, position: SolvePosition) -> None:
-        """Reports the progress of this rank within a long point to the first rank."""
+        """Reports the progress of this rank in a point that takes long to the first rank."""
         self.comm.send(position, dest=0, tag=PROGRESS_TAG)
 
     def poll_messages(self) -> None:

@@ -212,8 +212,8 @@ def _extra_soft_or_pulled_rod_ms(rod: Rod) -> float:
 
 
 def _squared_wave_number(rod: Rod) -> float:
-    """Squared wave number, in 1/L^2: of the shortest growing wave of a uniform rod under a push; times -1 of
-    the boundary layers of a rod under a pull; 0 for other rods."""
+    """Squared wave number, in 1/L^2: of the shortest growing wave of a uniform rod under a push (positive);
+    of the boundary layers of a rod under a pull, with a minus sign; 0 for other rods."""
     if rod.is_uniform_and_linear:
         return rod.F * rod.g
     # The unstable modes of arms are counted in `spectra_cost`.

@@ -65,7 +65,8 @@ class ProgressReporter:
         self.noun = noun
         self.remaining_time = None if total is None else RemainingTimeEstimator(total)
         self.start_time = self.next_display = 0.0
-        """Start of the sweep and time of the next display, on the monotonic clock, in s; 0 before."""
+        """Start of the sweep and time of the next display, on the monotonic clock, in s; 0 before the
+        start."""
         self.finished_count = 0
         self.fraction_sum = 0.0
         self.position_text = ""
@@ -87,8 +88,8 @@ class ProgressReporter:
         self._show_if_due()
 
     def show_position(self, text: str, fraction_sum: float = 0.0) -> None:
-        """Shows the text `text` on the progress of a long point, if an update is due. fraction_sum: sum of
-        the completed fractions of all unfinished points."""
+        """Shows the text `text` on the progress in a point that takes long, if an update is due.
+        fraction_sum: sum of the completed fractions of all unfinished points."""
         self.fraction_sum = fraction_sum
         self.position_text = text
         self._show_if_due()

@@ -32,7 +32,7 @@ class WorkItems(ItemChooser, Protocol):
     describes its items. The object is sent to all ranks."""
 
     done_item_phrase: ClassVar[str]
-    """Noun for one item and what was done with it, as in "piece of curves followed"."""
+    """Phrase for one item and the work done on it, as in "piece of curves followed"."""
     progress_noun: ClassVar[str]
     """Plural noun for items in the progress display."""
 
@@ -101,8 +101,8 @@ class Solver:
     """Chains of points, each started from the solution of the previous point; used instead of `solve`. None
     if there are no chains."""
     groups_and_group_solver: tuple[PointGroups, GroupSolveFunction] | None = None
-    """(groups of the sweep, function that solves the points of a group at their flat indices), used
-    instead of `solve`; None if no points are solved together."""
+    """(groups of the sweep, function from the flat indices of the points of a group to their `GroupResult`),
+    used instead of `solve`; None if no points are solved together."""
 
     def with_wrapper(
         self, solve_wrapper: SolveWrapper, solve_group: GroupSolveFunction | None = None, **changed: Any

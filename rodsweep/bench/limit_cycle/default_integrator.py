@@ -71,7 +71,7 @@ class IntegratorWithTolerances:
 def petsc_trajectory(ts_type: str, scheme_name: str, tolerance: float, task: IntegrationTask) -> Trajectory:
     """Trajectory of `task`, integrated by a scheme of PETSc TS as in the task `limit_cycle`; raises
     ArithmeticError if the integration fails. ts_type, scheme_name: type of TS and name of the scheme, such as
-    "arkimex" and "5". tolerance: see the module."""
+    "arkimex" and "5". tolerance: see the module docstring."""
     newton_ratio = (
         TimeScheme().newton_tolerance_ratio
         if tolerance > MAX_TOLERANCE_WITH_TIGHT_NEWTON

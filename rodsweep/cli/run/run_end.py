@@ -20,8 +20,8 @@ MAX_FAILURES_PRINTED = 3
 class ReportOfRank:
     """Report of a rank to the first rank at the end of a run.
 
-    host: name of the machine. failures: text on one failed point for each distinct reason. statistics:
-    numbers and times of the rank's points.
+    host: name of the machine. failures: for each distinct reason, a text on one point that failed for this
+    reason. statistics: numbers and times of the rank's points.
     """
 
     host: str

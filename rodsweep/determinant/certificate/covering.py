@@ -97,8 +97,8 @@ def distance_from_zero_bound(value: complex, a: complex, b: complex) -> float:
 
 @compiled
 def modulus_weighted_exponent_slopes(centre: BidiscCentre) -> DerivativePair:
-    """(L, K): the slopes d sqrt(z)/dw and d sqrt(z)/dp of the exponents, averaged over the two exponentials
-    of D with their moduli as weights."""
+    """(L, K): the slopes d sqrt(z)/dw and d sqrt(z)/dp of the exponents, z = z+ and z-, averaged over the two
+    exponentials of D with their moduli as weights."""
     root_plus = cmath.sqrt(centre.z_plus)
     root_minus = cmath.sqrt(centre.z_minus)
     # Removing the mean growth of the exponentials leaves a function that hardly changes over the box.

@@ -26,7 +26,8 @@ class DiscBoundSettings(KernelConstants):
     """|rounding error of D| <= this number times `DeterminantValue.rounding_error`; the largest ratio of
     20,000 unfavourable values was 0.7."""
     max_D_change_ratio: float = 0.9
-    """A proof needs a change of D over the disc below this number times |D|; below 1, so that D is not 0."""
+    """A proof needs a change of D over the disc below this number times |D|; it is below 1, so that D has no
+    zero in the disc."""
     max_relative_z_change_for_expansion: float = 0.5
     """sqrt(z) is expanded about the centre of a disc if the relative change x of z over the disc is below
     this number. The remainder is proportional to x^2/(1 - x)."""

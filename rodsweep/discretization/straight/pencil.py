@@ -202,7 +202,8 @@ def _assemble_blocks(
 ) -> Pencil:
     """The `Pencil` in which the `blocks` of all elements are summed into one sparsity pattern. element_count,
     order: number and order of the elements. blocks: (index of the constant matrix, rows, columns, block) of
-    each block. mass: lumped mass, (nodes,). unknown_scales: factors of the unknowns, (unknowns,)."""
+    each block. mass: lumped mass, (nodes,). unknown_scales: factors by which the unknowns are scaled,
+    (unknowns,)."""
     size = 3 * element_count * order
     diagonal = np.arange(size)
     keys = [diagonal * size + diagonal]

@@ -54,7 +54,8 @@ def write_jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count re
 
 @compiled
 def _add_law_tangent_minus_identity(x: Array, J: Array, P: Array, c: NodalRod) -> None:
-    """Adds P (T - 1) to J; both (rows, unknowns). T: tangent of the law of the rod `c` at the state x."""
+    """Adds P (T - 1) to J, (rows, unknowns) each. P: part of the Jacobian, see the module docstring. T:
+    tangent of the law of the rod `c` at the state x."""
     n = c.compliance.shape[1] - 1
     k = 0
     for i in range(n):

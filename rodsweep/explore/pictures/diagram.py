@@ -70,9 +70,9 @@ def unstable_count_grid(answer: dict[str, Any]) -> UnstableCountGrid | None:
 
 
 def _crushing_ratio(plane: DrawnPlane, logs: Array, load: Array) -> Array:
-    """Load divided by the crushing load (zero stretch), at every pixel, (PIXEL_COUNT, PIXEL_COUNT). logs:
-    logarithms of the second parameter, (rows,). load: crushing load of each row, infinite on no row or on all
-    rows, (rows,)."""
+    """Load divided by the crushing load, at which the stretch is 0, at every pixel, (PIXEL_COUNT,
+    PIXEL_COUNT). logs: logarithms of the second parameter, (rows,). load: crushing load of each row, infinite
+    on no row or on all rows, (rows,)."""
     if np.isinf(load).all():
         return np.zeros((PIXEL_COUNT, PIXEL_COUNT))
     # With two logarithmic axes the crushing load is a straight line over k1, and over the taper.
@@ -104,7 +104,8 @@ class DiagramCell(NamedTuple):
 
 def geometric_cell_edges(values: Array) -> Array:
     """Edges, (n + 1,), of the cells around n increasing positive values, (n,): the geometric means of
-    neighbouring values, and an edge beyond each end."""
+    neighbouring values, and beyond each end an edge at the same ratio as the edge on the other side of the
+    end value (exp(+-0.1) if n = 1)."""
     logs = np.log(values)
     if len(logs) == 1:
         return np.exp(logs[0] + np.array([-0.1, 0.1]))

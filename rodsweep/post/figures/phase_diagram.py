@@ -142,7 +142,8 @@ def _class_of_pixels(
 ) -> Array:
     """Class of every pixel of the plane, (pixels, pixels). The regions of equal class are bounded by the
     curves of the file and by the crushing force. classes: class at each computed point, (rows, columns).
-    ratio: force divided by the crushing force (zero stretch), at every pixel, (pixels, pixels)."""
+    ratio: force divided by the crushing force, at which the stretch is 0, at every pixel, (pixels,
+    pixels)."""
     parameters = plane_parameters(view)
     crushed_class = stored_number_of_word("crushed", palette.words)
     columns, rows = np.meshgrid(plane.x, plane.y)

@@ -34,8 +34,9 @@ CYCLE_CURVE_END_WORDS = {
 }
 """Phrase for the reason for which a curve of folds or torus points of cycles ends."""
 MAX_CURVE_DISTANCE_OVER_ROW_LENGTH = 0.01
-"""Where a curve crosses a row between two of its points, a special point of the row belongs to the curve if
-it lies between these two points, or outside their interval by at most this fraction of the row's length."""
+"""Where a curve crosses a row between two points of the curve, a special point of the row belongs to the
+curve if it lies between these two points, or outside their interval by at most this fraction of the row's
+length."""
 
 
 def plane_position_text(view: ResultView, prefix: str, i: int, parameters: PlaneParameters) -> str:

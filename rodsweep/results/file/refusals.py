@@ -33,8 +33,8 @@ def require_disk_space(path: Path, plan: FilePlan) -> None:
 
 
 def header_of_existing_file(path: Path, plan: FilePlan, journals: Path) -> ResultHeader:
-    """Header of the existing file at `path`, where the file of a plan belongs. Raises InputError unless the
-    existing file is a complete result. journals: journal directory of `path`.
+    """Header of the existing file at `path`, the path for the result file of `plan`. Raises InputError unless
+    the existing file is a complete result. journals: journal directory of `path`.
     """
     if not path.is_file():
         raise InputError(f"{path} is not a file; choose another file with -o")

@@ -127,7 +127,7 @@ class BranchCycle:
         return moved_orbit(self.orbit, self.scale.parameter_name, change)
 
     def predicted_on_next_mesh(self, length: float, max_earlier_cycles: int = 2) -> Orbit:
-        """The orbit of `predicted_orbit`, with equal arguments, on the mesh of the next cycle; raises
+        """The prediction of `predicted_orbit` for the same arguments, on the mesh of the next cycle; raises
         Unsolvable."""
         predicted = self.predicted_orbit(length, max_earlier_cycles)
         return self.next_mesh.interpolated_orbit(predicted) if self.next_mesh else predicted

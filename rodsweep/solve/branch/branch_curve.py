@@ -91,8 +91,8 @@ class RangeEndPassage:
     """Hopf point just beyond the end of the range where the branch ends, or None. With such a Hopf point,
     `cycle` is the cycle of the branch within the range that is nearest to its end."""
     normal_form_end_point: SpecialPoint | None = None
-    """The cycle at the end of the range by the normal form of `hopf_beyond_range_end`; None without
-    `hopf_beyond_range_end`."""
+    """The cycle at the end of the range, computed from the normal form of `hopf_beyond_range_end`; None
+    without `hopf_beyond_range_end`."""
 
     def is_same_as(self, other: "RangeEndPassage") -> bool:
         """Whether this passage and the passage `other`, of another branch, are at the same cycle or its

@@ -59,7 +59,7 @@ def accurate_end_before_hopf(start: BranchCycle, end: BranchCycle, limits: Branc
     """The end of a branch that leaves the range between the cycles `start` and `end`, and shrinks to a Hopf
     point just beyond the range. The cycle at the end of the range follows from the normal form of this Hopf
     point. None unless the normal form is accurate at the end of the range and a cycle solved there would not
-    be."""
+    be accurate."""
     index = index_of_passed_range_end(end, limits.coordinate_range)
     is_large = start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_amplitude_before_extrapolation
     if index < 0 or is_large or not start.orbit.is_symmetric:
@@ -104,8 +104,8 @@ def _known_hopf_end_or_shorter_step(
     start: BranchCycle, shorter: BranchCycle | None, limits: BranchLimits
 ) -> BranchCycle | BranchEnd | None:
     """The end of a branch at the known Hopf point to which its last cycle `start` leads, or at the end of the
-    range before this point; `shorter` if `start` is not near enough; None if it leads to no known Hopf point.
-    shorter: `start` with a shorter step, or None if no shorter step is allowed."""
+    range before this point; `shorter` if `start` is not near enough; None if `start` leads to no known Hopf
+    point. shorter: `start` with a shorter step, or None if no shorter step is allowed."""
     for number, hopf in enumerate(limits.hopfs):
         if _shrinks_to_hopf_point(start, hopf, limits.accuracy):
             # The parameter must still turn before the Hopf point, which a smaller cycle shows.

@@ -37,9 +37,9 @@ def cubic_minimum_and_position(a: float, b: float, slope_a: float, slope_b: floa
 
 class NextSamplePosition(NamedTuple):
     """Position of an additional sample between two samples. No sample is needed if the slopes of the
-    eigenvalues agree with their change between the samples, and exclude that the leading eigenvalue changes
-    between real and complex (an exchange). may_hold_two_exchanges: whether two exchanges may lie between the
-    samples."""
+    eigenvalues agree with the change of the eigenvalues between the samples, and exclude that the leading
+    eigenvalue changes between real and complex (an exchange). may_hold_two_exchanges: whether two exchanges
+    may lie between the samples."""
 
     interval_fraction: float
     """Position between the two samples as a fraction of their interval, from 0 to 1; 0 for no further
@@ -84,8 +84,8 @@ def next_sample_between(left: SpectrumSample, right: SpectrumSample) -> NextSamp
 def excludes_exchange(left: SpectrumSample, right: SpectrumSample, may_hold_two_exchanges: bool) -> bool:
     """Whether the slopes at two close samples, `left` and `right`, exclude that the leading eigenvalue
     changes between real and complex, although `next_sample_between` requests a sample between them.
-    may_hold_two_exchanges: as returned by that function. The leading eigenvalue must be real at both samples,
-    or a pair at both samples."""
+    may_hold_two_exchanges: this field of that function's result. The leading eigenvalue must be real at both
+    samples, or a pair at both samples."""
     return two_pairs_exchange_lead(left, right) or (
         not may_hold_two_exchanges and next_two_stay_below_leader(left, right)
     )

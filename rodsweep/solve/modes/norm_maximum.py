@@ -116,8 +116,8 @@ def _squared_norms_and_curvature_bounds(propagator: Propagator, times: Array) ->
 
 def _squared_norm_bound(h: Array, left: Array, right: Array, curvature: Array, abscissa: float) -> Array:
     """Upper bound of N^2, N = |exp(L t)|, in intervals of time, (intervals,). h: widths of the intervals.
-    left, right: N^2 at both ends. curvature: curvature bound c at the left ends; all (intervals,). abscissa:
-    upper bound, at least 0, of the numerical abscissa."""
+    left, right: N^2 at both ends. curvature: bound c of the module docstring at the left ends; all
+    (intervals,). abscissa: upper bound, at least 0, of the numerical abscissa."""
     growth = np.exp(np.minimum(2 * abscissa * h, NORM_MAXIMUM_SETTINGS.max_exponent))
     # Two bounds: growth at the rate of the abscissa, and the chord plus the largest curvature below it.
     return np.minimum(left * growth, np.maximum(left, right) + h**2 / 8 * curvature * growth)

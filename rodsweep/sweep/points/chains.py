@@ -120,9 +120,9 @@ class ChainSolver:
         self.checkpoints.remove(chain_number)
 
     def _resume_position_and_state(self, chain_number: int, order: list[int]) -> tuple[int, State]:
-        """Returns (position in the chain of the first point to solve, its initial state). order: flat indices
-        of the points of the chain in the order of solution. The checkpoint is used if no point up to the
-        checkpoint is missing; otherwise the chain starts again without an initial state."""
+        """Returns (position, within the chain, of the first point to be solved; initial state of its solve).
+        order: flat indices of the points of the chain in the order of solution. The checkpoint is used if no
+        point up to the checkpoint is missing; otherwise the chain starts again without an initial state."""
         checkpoint = self.checkpoints.read(chain_number)
         # The grid may have been extended or reversed since the checkpoint was written.
         if checkpoint is None or checkpoint[0] not in order:

@@ -88,8 +88,8 @@ def regions_from_averaged_weights(u: Array, coefficients: Array, F: float, only_
 @compiled
 def _trial_weight(points: TrialPoints, factor: float, log_t_of_arm: Array) -> TrialWeight:
     """The weight t at `points`: the points of the arm, and the points added for one half-width h of the
-    window. factor: the factor f in t. log_t_of_arm: log t at the points of the arm, which is known
-    already."""
+    window. factor: the factor f in t = g/(nu + f |F| sqrt(c2 c3 gamma3/gamma2)). log_t_of_arm: log t at the
+    points of the arm, which is known already."""
     u = points.u
     log_weight = np.empty(len(u))
     integral = np.zeros(len(u))
@@ -105,8 +105,8 @@ def _trial_weight(points: TrialPoints, factor: float, log_t_of_arm: Array) -> Tr
 
 @compiled_with_reordered_sums
 def _weight_before_averaging(points: TrialPoints, i: int, factor: float) -> float:
-    """The weight t = g/(nu + l) of the module at point number i. factor: f. l is f times
-    `points.load_terms`."""
+    """The weight t = g/(nu + l) of the module docstring at point number i, l = f `points.load_terms`. factor:
+    f."""
     return points.coefficients[5, i] / (points.coefficients[0, i] + factor * points.load_terms[i])
 
 

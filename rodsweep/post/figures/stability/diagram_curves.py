@@ -38,7 +38,8 @@ SPECIAL_POINT_MARKS_ON_ROWS = {
     "symmetry_breaking": ("symmetry breakings of cycles", "^"),
     "period_doubling": ("period doublings of cycles", "v"),
 }
-"""(legend entry, marker) of special points of cycles on rows that lie on no curve, by kind."""
+"""(legend entry, marker) of special points of cycles, by kind: points that were found on rows and lie on no
+curve."""
 POINT_ON_CURVE_TOLERANCE = 1e-3
 """A point lies on a curve if its distances from the curve along x and y, in fractions of the axes, are at
 most this number."""

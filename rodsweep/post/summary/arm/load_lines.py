@@ -19,7 +19,7 @@ VERDICTS_BY_COMPRESSION = {
     DOUBTFUL_RATIO: f"is more than {DOUBTFUL_RATIO:g} times its limit, and the model is doubtful",
     1.0: "exceeds its limit, and the model does not apply",
 }
-"""Verdict on the model, by the ratio of compression to its limit above which the verdict holds."""
+"""Verdicts on the model, by ratio of compression to its limit; a verdict holds above its ratio."""
 
 
 def flutter_force_line(arms: PointSelection) -> list[str]:
@@ -50,7 +50,7 @@ def extreme_arms_text(arms: PointSelection, loads: np.ndarray, smallest: str) ->
 
 
 def drag_variation_lines(arms: PointSelection, names: Mapping[str, str]) -> list[str]:
-    """Line on the variation of variables over the drags of an arm; an empty list if drag does not vary.
+    """Line on how much variables vary between the drags of one arm; an empty list if the drag does not vary.
     names: variables by printed name."""
     arm_indices = arm_index_apart_from_drag(arms.view)
     if arm_indices is None:

@@ -48,9 +48,9 @@ class ArcLengthScale:
     def at_orbit(
         cls, orbit: Orbit, name: str, min_deflection_unit: float, min_coordinate_unit: float = 0.0
     ) -> "ArcLengthScale":
-        """The scale of an orbit. The units are sqrt(d^2 + min_deflection_unit^2), d: largest deflection over
-        the orbit, and the larger of `min_coordinate_unit` and the modulus of the parameter coordinate. name:
-        continuation parameter. min_deflection_unit: smallest unit of the deflection, in L.
+        """The scale of an orbit. Unit of the deflection: sqrt(d^2 + min_deflection_unit^2), d: largest
+        deflection over the orbit. Unit of the parameter coordinate: the larger of `min_coordinate_unit` and
+        its modulus. name: continuation parameter. min_deflection_unit: smallest unit of the deflection, in L.
         min_coordinate_unit: smallest unit of the parameter coordinate."""
         max_deflection = float(np.abs(orbit.all_states @ deflection_functional(orbit)).max())
         # `min_deflection_unit` keeps the unit positive near a Hopf point, where the deflection vanishes.

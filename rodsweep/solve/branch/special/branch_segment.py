@@ -17,7 +17,7 @@ from .special_point import SPECIAL_POINT_SETTINGS
 class BranchSegment:
     """Segment of a branch from the cycle `start` to the next cycle `end`, on which cycles are solved at any
     arc length. mesh: mesh on which `cycle_at` solves cycles, at first the mesh of `end`; it may be changed.
-    The first cycle on a mesh is predicted from the last cycle on the mesh before; on the first mesh, by the
+    The first cycle on a mesh is predicted from the last cycle on the previous mesh; on the first mesh, by the
     polynomial through the cycles up to `end`."""
 
     def __init__(self, start: BranchCycle, end: BranchCycle) -> None:
@@ -90,7 +90,8 @@ class BranchSegment:
         return self._matrix
 
     def _nearby_matrix(self, orbit: Orbit) -> BorderedMatrix | None:
-        """The last matrix of this segment if its factors serve for cycles near `orbit`; otherwise None."""
+        """The last matrix of this segment if its factors are still valid and it was assembled on the same
+        mesh near `orbit`; otherwise None."""
         matrix = self._matrix
         if (
             matrix is None

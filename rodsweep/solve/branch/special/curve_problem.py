@@ -124,8 +124,8 @@ class SpecialCurveProblem(CurvePointSolver):
     def _points_for_prediction(
         self, previous: Sequence[SolvedCurvePoint], length: float
     ) -> list[SolvedCurvePoint]:
-        """The last points of `previous`, from which the next point is predicted; the two parameters exchange
-        their roles in these points if a step of the arc length `length` needs it."""
+        """The last points of `previous`, from which the next point is predicted; in these points the two
+        parameters exchange their roles if the step of the arc length `length` requires the exchange."""
         exchanged = self.need_exchange_beyond(previous, length)
         last_points = previous[-CURVE_IDENTITY_SETTINGS.max_extrapolation_points :]
         return [self.with_roles(point, exchanged) for point in last_points]
@@ -200,7 +200,8 @@ class SpecialCurveProblem(CurvePointSolver):
         )
 
     def _reason_for_lost_curve(self, last: SolvedCurvePoint) -> CurveEndReason:
-        """Reason why a curve was lost beyond its last point: `resonance`, or `not_followed` if unknown."""
+        """Reason why a curve could not be continued beyond its last point: `resonance`, or `not_followed` if
+        unknown."""
         if self.kind == SpecialPointKind.torus:
             pair = multiplier_pair_nearest_unit_circle(BorderedMatrix(last.orbit, last.scale, self.workspace))
             if pair is None or abs(pair.imag) < SPECIAL_CURVE_END_SETTINGS.min_sine_at_resonance * abs(pair):

@@ -24,7 +24,7 @@ from .special_point import RowSpecialPoint, SpecialPoint
 
 MAX_CURVE_AND_ROW_STAGES = 8
 """Maximum number of stages of a diagram: stages of curves and stages of rows alternate, and each finds fewer
-branches than the stage before. `show` names the rows with cycles that are not reached."""
+branches than the stage before. `show` names the rows with cycles that this search does not reach."""
 WorkItemResults = Mapping[int, dict[str, Array]]
 """Results of work items, by number; of a row: its variables by name, empty if the row failed."""
 SpecialPointsOfRowFunction = Callable[[int, dict[str, Array]], list[RowSpecialPoint]]
@@ -39,7 +39,7 @@ class RowsWithDetachedBranches(RowWorkItems):
     done_item_phrase: ClassVar[str] = (
         "row solved again with branches found from curves of folds and torus points"
     )
-    """Noun for one row and what was done with it, for the report at the end of a run."""
+    """Phrase for one row and the work done on it, for the report at the end of a run."""
     item_label_prefix: ClassVar[str] = "detached branches"
     """Text before the row parameter in the progress display."""
 
@@ -175,9 +175,9 @@ class DiagramStages:
         return _rows_solved_again(self.stages(results), results)
 
     def count_of_curves_lost_beyond_range(self, results: WorkItemResults) -> int:
-        """Number of ends at which curves were lost while they were followed beyond the range, where they may
-        lead to further rows, plus the number of special points from which no such curve could be followed;
-        valid if the last stage is complete. results: arrays, (...,) each, by name and item."""
+        """Number of ends at which curves could not be continued while they were followed beyond the range,
+        where they may lead to further rows, plus the number of special points from which no such curve could
+        be followed; valid if the last stage is complete. results: arrays, (...,) each, by name and item."""
         count = 0
         for stage in self.stages(results):
             if (

@@ -3,7 +3,7 @@
 The matrix of the cycle's equations with the branch parameter as a further unknown has full rank at a fold. It
 loses rank where the other parameter is extremal on the curve, as where a closed branch shrinks to one cycle.
 There the matrix with the other parameter as the unknown has full rank. A fold does not depend on which of the
-two parameters varies along the branch, so that they exchange their roles near such an extremum.
+two parameters varies along the branch. Near such an extremum the parameters therefore exchange their roles.
 """
 
 from collections.abc import Sequence
@@ -98,8 +98,8 @@ class ParameterRoles:
 
     def need_exchange_beyond(self, points: Sequence[SolvedCurvePoint], length: float) -> bool:
         """Whether the parameters exchange their roles on the step of the arc length `length` beyond the last
-        of `points`: on the last chord or on the predicted chord the row parameter hardly changes, or it turns
-        back between these chords and the parameter along a row does not."""
+        of `points`: on the last chord or on the predicted chord the row parameter hardly changes, or the row
+        parameter turns back between these chords and the parameter along a row does not."""
         last_points = [
             self.with_unexchanged_roles(point)
             for point in points[-CURVE_IDENTITY_SETTINGS.max_extrapolation_points :]

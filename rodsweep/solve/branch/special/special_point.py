@@ -15,7 +15,7 @@ class SpecialPointSettings:
     real_multiplier_tolerance: float = 1e-7
     """A multiplier m is treated as real if |Im m| is at most this number times |m|."""
     accuracy: float = 1e-9
-    """Relative accuracy of the parameter at a special point, unless the accuracy of the branch is a smaller
+    """Relative accuracy of the parameter at a special point; the accuracy of the branch if that is a smaller
     number."""
     first_mesh_accuracy_ratio: float = 0.2
     """Ratio of the accuracy for which the first mesh is chosen to the required accuracy."""
@@ -38,7 +38,7 @@ class SpecialPointSettings:
     """Maximum number of secant steps."""
     min_stagnant_step_ratio: float = 0.5
     """If a small secant step, or a small change of a test function, is more than this number times the
-    previous one, it is rounding error."""
+    previous step or change, it is rounding error."""
     max_stalled_step_per_branch_step: float = 1e-6
     """The secant method stops if its step, divided by the step of the branch, is at most this number and more
     than `min_stagnant_step_ratio` times the previous step."""
@@ -49,14 +49,15 @@ class SpecialPointSettings:
     """Longest last secant step at a fold, divided by the step of the branch; longer than elsewhere, because
     the parameter is quadratic in arc length."""
     relative_slope_error: float = 0.01
-    """Relative error of the slope, and thus of the last secant step. The slope may come from the prediction
-    or from a coarser mesh; at 91 special points of random rods it had errors of up to 0.0025."""
+    """Relative error of the slope of the test function, and thus of the last secant step. The slope may come
+    from the prediction or from a coarser mesh; at 91 special points of random rods it had errors of up to
+    0.0025."""
     max_distance_from_matrix_orbit: float = 1e-3
     """Largest relative distance between a cycle and the orbit whose matrix factors correct the test function
     of the cycle; at this distance each correction gains at least two digits."""
     bracket_tolerance: float = 1e-3
-    """Relative tolerance of the bracketing: for the test function, divided by its smaller modulus at the two
-    ends; for the arc length, divided by the step."""
+    """Tolerances of the bracketing: for the test function, as a fraction of the smaller of its moduli at the
+    two ends of the step; for the arc length, as a fraction of the step."""
     max_mesh_comparisons: int = 4
     """Maximum number of comparisons of a special point on two successive meshes."""
     min_element_order_increase: int = 2
@@ -157,7 +158,7 @@ class SpecialPoint:
 
     @property
     def is_unlocated(self) -> bool:
-        """Whether the point was not located: it has the values of a cycle beside it."""
+        """Whether the point was not located; its values are then those of a cycle beside it."""
         return bool(self.message) and self.kind not in (SpecialPointKind.hopf, SpecialPointKind.end)
 
     def is_same_as(self, other: "SpecialPoint") -> bool:

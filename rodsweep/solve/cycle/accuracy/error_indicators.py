@@ -64,8 +64,8 @@ def _slowest_decay_over_solved_time_interval(multipliers: Complex) -> float:
 
 
 def coefficient_tails_and_orbit_size(orbit: Orbit) -> Array:
-    """Relative coefficient tails of an orbit, in space for each element, then in time, and the size of the
-    orbit, (elements + 2,). Tails are at least `min_coefficient_tail`."""
+    """Coefficient tails of an orbit relative to its size, in space for each element, then in time, and the
+    size itself (largest energy norm), (elements + 2,). Tails are at least `min_coefficient_tail`."""
     tails = np.maximum(
         smooth_element_and_time_tails(orbit), MESH_ERROR_CALIBRATION_SETTINGS.min_coefficient_tail
     )

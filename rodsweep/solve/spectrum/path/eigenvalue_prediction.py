@@ -176,8 +176,9 @@ def _predict_pair(
 def set_two_guesses(
     w: Complex, pair: tuple[int, int], roots: tuple[complex, complex], guess: Complex
 ) -> None:
-    """Writes `roots` as the guesses for two eigenvalues, in the order of these eigenvalues in w: real part,
-    then frequency. pair: indices of the two eigenvalues in w and `guess`, (m,) each."""
+    """Writes `roots` as the guesses for two eigenvalues, so that the guesses are ordered, by real part and
+    then by frequency, as the eigenvalues in w are. pair: indices of the two eigenvalues in w and `guess`,
+    (m,) each."""
     k, j = pair
     first_root, second_root = roots
     if (first_root - second_root).real < 0 or (first_root - second_root).imag < 0:

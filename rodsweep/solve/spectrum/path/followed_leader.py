@@ -131,8 +131,9 @@ def _refined_eigenvalues_and_errors(
     guesses: Complex, determinant: ArmDeterminant, accuracy: float
 ) -> tuple[Complex, Array]:
     """Returns (w, errors), (m,) each: the eigenvalues of an arm near `guesses`, (n,), and their absolute
-    errors. A complex guess near which no complex eigenvalue has the relative error `accuracy` gives two real
-    eigenvalues; two real guesses near which there are no such real eigenvalues give a complex one."""
+    errors. Where Newton's method finds no complex eigenvalue of the relative error `accuracy` near a complex
+    guess, two real eigenvalues take its place; where it finds none near two real guesses, a complex
+    eigenvalue takes their place."""
     w, error = _newton_roots_and_errors(guesses, determinant)
     is_lost = (error > accuracy * np.abs(w)) | ((w.imag == 0) & (guesses.imag != 0))
     if not is_lost.any():
