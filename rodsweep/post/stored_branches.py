@@ -153,8 +153,8 @@ def stored_branch(v: dict[str, Array], parameter_name: str, number: int) -> Stor
 
 def _parameter_clipped_at_special_points(x: Array, error: Array, is_special: NDArray[np.bool_]) -> Array:
     """The parameter at the vertices of a branch, (n,); cycles are moved by at most twice their absolute error
-    into the range between the special points before and after them. x, error: parameter at the vertices, and
-    its absolute error, (n,) each. is_special: mask of the special points, (n,)."""
+    into the parameter range between the special points before and after them. x, error: parameter at the
+    vertices, and its absolute error, (n,) each. is_special: mask of the special points, (n,)."""
     x = x.copy()
     for start, end in pairwise(np.flatnonzero(is_special)):
         interior = slice(start + 1, end)

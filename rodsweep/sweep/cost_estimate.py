@@ -192,7 +192,7 @@ def spectra_cost(points: Points, mode_count: int, accuracy: float, certify: bool
 
 
 def _unstable_counts_of_arms(rods: list[Rod]) -> NDArray[np.float64]:
-    """Expected unstable modes of each rod, (rods,), at most `max_unknowns`; 0 for uniform linear rods."""
+    """Expected number of unstable modes, (rods,), at most `max_unknowns`; 0 for uniform linear rods."""
     counts = [0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods]
     return np.minimum(counts, RESOLUTION_SETTINGS.max_unknowns)
 

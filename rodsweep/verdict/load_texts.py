@@ -42,7 +42,8 @@ TYPICAL_FLUTTER_FORCE = 36.0
 """Typical flutter force, in k3/L^2. If the user gave no load, loads are printed with the SI prefix (Pa, kPa)
 that suits this force."""
 MAX_TYPED_NUMBER_LENGTH = 6
-"""A number of at most this many characters is reported as typed; a longer one is rounded to four digits."""
+"""A number of at most this many characters is reported as typed; a longer number is rounded to four
+digits."""
 
 
 class LoadFormatter:

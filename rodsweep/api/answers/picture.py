@@ -160,7 +160,8 @@ class Picture:
 
 
 def _is_point_number(value: object) -> bool:
-    """Whether a value can be the number of a point, an integer from 1 to the largest integer of an array."""
+    """Whether a value can be the number of a point, an integer from 1 to the largest integer that an array
+    can hold."""
     return isinstance(value, int | np.integer) and value is not True and bool(1 <= value <= sys.maxsize)
 
 

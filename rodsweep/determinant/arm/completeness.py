@@ -66,7 +66,7 @@ class CompletenessSettings(KernelConstants):
     """Exclusive bounds (lower, upper) of fields, by name, that the proofs require; see `KernelConstants`."""
 
     def proof_trials(self) -> list[tuple[int, float]]:
-        """Pairs (k, largest x_k divided by the largest known |w|) of all trials, in order."""
+        """Pairs (number k of x_j, largest x_k divided by the largest known |w|) of all trials, in order."""
         return list(zip(self.real_point_counts, self.max_real_point_over_largest_w, strict=True))
 
 

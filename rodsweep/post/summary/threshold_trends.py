@@ -10,8 +10,8 @@ from .number_texts import axis_values_text
 from .selection import in_brackets
 
 TREND_ROUNDING = 1e-12
-"""Steps between neighbouring thresholds of a line are rounding errors if their ratio to the largest threshold
-of the line is at most this number."""
+"""Differences between neighbouring thresholds on a line of rods count as rounding errors if their ratio to
+the largest threshold of the line is at most this number."""
 UNKNOWN, RISES, FALLS, IS_CONSTANT, IS_NOT_MONOTONE = range(-1, 4)
 """Changes of a threshold along a line of rods; unknown with fewer than two known values."""
 

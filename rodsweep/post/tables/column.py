@@ -100,8 +100,8 @@ class Column:
 
 
 def column_of(variable: Variable, values: NDArray, flag_meanings: Mapping[int, str] | None = None) -> Column:
-    """Column of a variable. values: (rows,). flag_meanings: words by value, used instead of the flags of the
-    variable if given."""
+    """Column of a variable. values: (rows,). flag_meanings: words by value; if given, they replace the words
+    of the variable's flags."""
     meanings = dict(variable.flags) if flag_meanings is None else flag_meanings
     meaning = variable.long_name.removesuffix(UNKNOWN_COUNT_LONG_NAME_SUFFIX)
     is_absent = missing_values_mask(variable, values)

@@ -54,8 +54,8 @@ class BranchRecord:
         cycles again on other meshes until all errors are within the accuracy. Returns the last cycle; raises
         Unsolvable.
 
-        condition: equation that defines the last cycle on every mesh; by default the condition that its arc
-        length is unchanged.
+        condition: equation that defines the last cycle on every mesh; by default the condition that the arc
+        length of this cycle is unchanged.
         """
         if self._unmeasured:
             points = cycles_with_errors_within_accuracy(

@@ -81,7 +81,7 @@ def _end_at_hopf_or_shorter_step(
 ) -> BranchCycle | BranchEnd:
     """The end of a branch of cycles that shrink to a Hopf point between `start` and `end`: at this Hopf
     point, at the end of the range before it, or a failure if no known Hopf point is near. If `start` is too
-    large for an extrapolation, `start` with half the step. Raises Unsolvable."""
+    large for an extrapolation, the result is `start` with half the step. Raises Unsolvable."""
     half_length = arc_length_between(start, end) / 2
     shorter = (
         replace(start, next_step_length=half_length) if half_length >= ARC_STEP_CONTROL.min_length else None
@@ -162,7 +162,8 @@ def _end_at_breaking_or_shorter_step(
     start: BranchCycle, end: BranchCycle, limits: BranchLimits
 ) -> BranchCycle | BranchEnd:
     """The end of an asymmetric branch at a symmetry breaking between `start` and `end`; a failure if no known
-    symmetry breaking is near. If `start` is too asymmetric, `start` with half the step. Raises Unsolvable."""
+    symmetry breaking is near. If `start` is too asymmetric, the result is `start` with half the step. Raises
+    Unsolvable."""
     index = symmetry_breaking_index_between(start, end, limits.breakings, limits.accuracy)
     if index is None:
         return replace(start, next_step_length=arc_length_between(start, end) / 2)

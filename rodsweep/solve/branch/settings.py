@@ -128,8 +128,8 @@ class BranchMeshSettings:
     8 steps errors that change their sign between two measured cycles exceeded their estimates, by up to 4
     times."""
     max_planned_error_growth: float = 4.0
-    """A mesh is chosen for the expected errors at the next measured cycle. The factor by which the errors
-    grow up to this cycle is taken as at most this number."""
+    """A mesh is chosen for the errors expected at the next cycle whose errors are measured. The growth factor
+    of the errors up to this cycle is limited to this number."""
     max_error_growth_since_measurement: float = 4.0
     """Errors are measured again if the coefficient tails predict that the errors have grown by more than this
     factor since the last measurement."""
@@ -151,10 +151,10 @@ class BranchEndSettings:
     by its largest bending moment, is at most this number; otherwise the step is shortened."""
     min_asymmetry_per_moment: float = 0.02
     """If the asymmetry, divided by the largest bending moment, is at most this number, the step is not
-    shortened: the extrapolation to the symmetric cycle would not improve."""
+    shortened: a shorter step would not improve the extrapolation to the symmetric cycle."""
     lost_asymmetry_ratio: float = 0.1
-    """A step has reached or passed a symmetric cycle if the ratio of the asymmetry at its end to the
-    asymmetry at its start is less than this number."""
+    """A step has reached or passed a symmetric cycle if the ratio of the asymmetry at the end of the step to
+    the asymmetry at its start is less than this number."""
     allowed_asymmetry_to_prediction_ratios: tuple[float, float] = 0.5, 2.0
     """Smallest and largest allowed ratio of the solved to the predicted asymmetry of the first asymmetric
     cycle."""

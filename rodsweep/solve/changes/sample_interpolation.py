@@ -120,9 +120,8 @@ def two_pairs_exchange_lead(left: SpectrumSample, right: SpectrumSample) -> bool
 
 
 def has_only_double_eigenvalue(left: SpectrumSample, right: SpectrumSample) -> bool:
-    """Whether, by the slopes at the samples `left` and `right`, the double eigenvalue between them is the
-    only change of the leading eigenvalue there. The leading eigenvalue is real at one sample, and a complex
-    pair at the other."""
+    """Whether the slopes at the samples `left` and `right` show that the leading eigenvalue changes only once
+    between them: at a double eigenvalue, from real at one sample to a complex pair at the other."""
     squares = left.scaled_squared_difference_and_slope(), right.scaled_squared_difference_and_slope()
     if squares[0] is None or squares[1] is None:
         return False

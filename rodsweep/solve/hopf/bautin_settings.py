@@ -14,8 +14,8 @@ BAUTIN_STEP_CONTROL = StepControl(
     max_successive_length_ratio=1.5,
     max_solutions=2000,
 )
-"""Step length control along a curve of generalised Hopf points. The range of each parameter has length 1. A
-prediction error is divided by the step length."""
+"""Step length control along a curve of generalised Hopf points. The range of each parameter has length 1.
+Prediction errors are fractions of the step length."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -34,8 +34,8 @@ class LeadingModeSettings:
     """Settings for the transient growth, and for the test whether a rod is unstable."""
 
     min_wave_number_for_transient_growth: float = 24.0
-    """The mesh for the growth resolves at least this wave number, the wave number of the eighth mode without
-    load, because growth at short times needs more modes than are requested."""
+    """The mesh for the growth resolves at least this wave number, in 1/L, the wave number of the eighth mode
+    without load, because growth at short times needs more modes than are requested."""
     min_growth_rate_over_error: float = 4.0
     """A rod is treated as unstable if a growth rate exceeds this multiple of its error estimate."""
 

@@ -45,7 +45,8 @@ class GrowthSettings:
     max_finer_meshes: int = 5
     """Maximum number of meshes after the first, each finer than its predecessor."""
     max_unknowns: int = 400
-    """Maximum number of unknowns of a further mesh; all modes of a larger mesh take more than a second."""
+    """Maximum number of unknowns of a further mesh; to compute all modes of a larger mesh takes more than a
+    second."""
 
 
 GROWTH_SETTINGS = GrowthSettings()

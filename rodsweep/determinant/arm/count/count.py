@@ -31,7 +31,8 @@ NO_KNOWN_EIGENVALUES: Complex = np.empty(0, complex)
 
 
 class PhaseLost(ArithmeticError):
-    """The change of arg D along the contour could not be determined; node_count: number of nodes used."""
+    """The change of arg D along the contour could not be determined. node_count: number of nodes that were
+    used."""
 
     def __init__(self, node_count: int):
         super().__init__(PHASE_LOST_MESSAGE)

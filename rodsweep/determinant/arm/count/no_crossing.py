@@ -39,7 +39,7 @@ from .settings import CONTOUR_SETTINGS, NO_CROSSING_SETTINGS
 class SampledArmsOfInterval(NamedTuple):
     """Some arms of an interval: the middle arm, then the arms at both ends, then further arms.
 
-    known_eigenvalues, known_errors: eigenvalues followed from arm to arm, and their errors, (n, m) each.
+    known_eigenvalues, known_errors: m eigenvalues followed through the n arms, and their errors, (n, m) each.
     squared_exponent_coefficients, quadrature_weights: as in `ExponentSamples`, (n, 4, points) and (points,).
     largest_w, propagators: W, and the propagators of the arms for |w| <= W, (n, elements, terms,
     PROPAGATOR_LENGTH).
@@ -90,7 +90,7 @@ def proves_no_crossing_of_arms(
     """Whether no unknown eigenvalue lies on the line Re w = `line` for any arm of an interval.
 
     rods: arms of the interval in the order of `sampled_point_indices`; p: their path variables, (n,).
-    eigenvalues_and_errors: their known eigenvalues, followed from arm to arm, and the errors, (n, m) each.
+    eigenvalues_and_errors: m known eigenvalues, followed through the n arms, and their errors, (n, m) each.
     family, hulls: propagators and hulls of all arms of the path.
     """
     w, error = eigenvalues_and_errors

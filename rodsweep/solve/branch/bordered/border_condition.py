@@ -55,11 +55,11 @@ class BorderCondition:
     ) -> ConvergedOrbit:
         """The cycle near `orbit` that fulfils the condition, by Newton's method; raises Unsolvable.
 
-        tolerance: relative error of the cycle. workspace: memory of Newton's matrices. max_matrix_distance:
-        largest allowed relative error of multipliers and tangent. Estimates of this error: the distance of
-        the cycle from the orbit at which the last matrix was assembled, or the error that remains after a
-        correction. nearby: the last matrix of the workspace, assembled near `orbit`, with which the iteration
-        begins, or None.
+        tolerance: largest allowed relative error of the cycle. workspace: memory of Newton's matrices.
+        max_matrix_distance: largest allowed relative error of multipliers and tangent. Estimates of this
+        error: the distance of the cycle from the orbit at which the last matrix was assembled, or the error
+        that remains after a correction. nearby: the last matrix of the workspace, assembled near `orbit`,
+        with which the iteration begins, or None.
         """
         matrix = nearby or BorderedMatrix(orbit, self.scale, workspace)
         distance_from_matrix_orbit = matrix.relative_distance_to_orbit(orbit) if nearby else 0.0
@@ -131,8 +131,8 @@ class BorderCondition:
         self, mesh: OrbitMesh, solved: ConvergedOrbit, tolerance: float, max_matrix_distance: float = np.inf
     ) -> ConvergedOrbit:
         """The cycle `solved` solved again on the mesh `mesh` under this condition; raises Unsolvable.
-        tolerance: relative error of the cycle. max_matrix_distance: largest allowed relative error of
-        multipliers and tangent."""
+        tolerance: largest allowed relative error of the cycle. max_matrix_distance: largest allowed relative
+        error of multipliers and tangent."""
         orbit = mesh.interpolated_orbit(solved.orbit)
         return self.solve_cycle(orbit, tolerance, solved.workspace, max_matrix_distance)
 

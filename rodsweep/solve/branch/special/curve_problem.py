@@ -1,4 +1,5 @@
-"""Continuation of a curve of folds or torus points over two parameters, from a row to an end of the curve."""
+"""Continuation of a curve of folds or torus points over two parameters, from a special point on a row of the
+diagram to an end of the curve."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -31,8 +31,8 @@ class ParameterRoleSettings:
     of the diagram) along the curve is at most this number times the relative change of the parameter along a
     row. With larger slopes the errors of the parameter along a row are smaller without the exchange."""
     min_coordinate_unit_per_axis_length: float = 0.01
-    """Smallest unit of a parameter coordinate (1/k for a stiffness k), divided by the length of its axis in
-    this coordinate; the coordinate itself, the usual unit, may be 0."""
+    """Lower limit of the unit of a parameter coordinate (1/k for a stiffness k) in arc lengths, divided by
+    the length of its axis in this coordinate. The usual unit, the modulus of the coordinate, may be 0."""
 
 
 PARAMETER_ROLE_SETTINGS = ParameterRoleSettings()
@@ -62,7 +62,8 @@ class ParameterRoles:
 
     def with_roles(self, point: SolvedCurvePoint, exchanged: bool) -> SolvedCurvePoint:
         """The point `point` with the row parameter (if `exchanged`) or the parameter along a row as the
-        branch parameter. Derivatives and the measured error of a point whose roles change are unknown."""
+        branch parameter. If the roles change, the derivatives and the measured error of the point are
+        unknown."""
         if self.are_exchanged_at(point) == exchanged:
             return point
         other_axis, branch_axis = self.axes_of(point)

@@ -86,7 +86,7 @@ class SpecialPointSettings:
     is a coincidence."""
     error_safety_factor: float = 3.0
     """Safety factor of the error estimate, on the difference between the special points on two meshes and on
-    the error that is assumed to be left."""
+    the error that is assumed to be left on the finer mesh."""
     relative_rounding_error: float = 1e-13
     """Relative rounding error of the parameter, the period and the largest tip y of a special point."""
     max_undecided_multiplier_minus_one: float = 3e-3

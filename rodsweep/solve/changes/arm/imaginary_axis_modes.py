@@ -49,8 +49,9 @@ class ArmModes:
 
 class ModesAlongPath:
     """The modes of the arms of a path, computed when needed. modes_by_p: the modes computed so far, by path
-    variable p. outside_p_by_end: for p of each end of the path, a path variable just outside, at which the
-    modes are counted instead if the count at the end fails, for example because a pair lies on the axis."""
+    variable p. outside_p_by_end: for each end of the path, by its p: a path variable just outside the path,
+    at which the modes are counted instead if the count at the end fails, for example because a pair lies on
+    the axis."""
 
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem

@@ -56,8 +56,8 @@ class BoundarySeed:
 def seed_of(
     values: tuple[float, float], kind: int, frequency: float, growth_rate: float
 ) -> BoundarySeed | None:
-    """The seed at a threshold with the given `values` of both parameters; None for an overtaking of
-    a real eigenvalue and a pair, because no boundary consists of overtakings. kind: value of `ThresholdKind`.
+    """The seed at a threshold with the given `values` of both parameters; None where a real eigenvalue and a
+    pair only exchange the lead, because such points form no boundary. kind: value of `ThresholdKind`.
     frequency, growth_rate: Im and Re of the eigenvalue, in 1/tau2."""
     if kind in (ThresholdKind.hopf, ThresholdKind.hopf_reverse, ThresholdKind.restabilization):
         return BoundarySeed(values, 0.0, frequency)
@@ -96,7 +96,8 @@ class _BoundaryTracingProblem:
 
     def distance_along_row(self, curve: BoundaryCurve, seed: int) -> float:
         """Distance of the threshold with index `seed` from `curve` along the first axis, in the scaled
-        coordinate of this axis; inf if no point near the threshold has nearly its eigenvalue."""
+        coordinate of this axis; inf if no point of the curve near the threshold has nearly the threshold's
+        eigenvalue."""
         return _distance_along_first_axis(self.plane, curve, self.seeds[seed])
 
     def are_identical(self, first: BoundaryCurve, second: BoundaryCurve) -> bool:
