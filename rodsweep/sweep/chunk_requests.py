@@ -24,7 +24,7 @@ REQUEST_TAG = 71
 ANSWER_TAG = 72
 """MPI tag of the answer to a request, an `IndexRange`."""
 STOP_TAG = 73
-"""MPI tag of a stop request, the name of the signal."""
+"""MPI tag of a stop request; the message is the name of the signal."""
 PROGRESS_TAG = 74
 """MPI tag of a report of progress in a point that takes long, a `SolvePosition`."""
 POLL_SECONDS = 2e-3

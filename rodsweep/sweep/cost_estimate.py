@@ -57,7 +57,7 @@ MIN_UNSTABLE_MODES_OF_QUARTIC_TIME = 500.0
 """Number of unstable modes at which the time of a spectrum begins to grow with their fourth power."""
 PULLED_MS_PER_LAYER_WAVE_NUMBER = 0.4
 """Time of a spectrum of a pulled rod, divided by the wave number of the layers at its ends, in ms L: 0.2 to
-0.8 for nine rods under pulls of 1e3 to 1e6, some unresolved; 0.02 for a rod without compliances at 1e3."""
+0.8 for nine rods under pulls of 1e3 to 1e6, not all resolved; 0.02 for a rod without compliances at 1e3."""
 MAX_RESOLVED_LAYER_WAVE_NUMBER = 25.0
 """Wave number, in 1/L, below which the first mesh of a pulled rod resolves the layers at its ends."""
 BEYOND_SHEAR_STIFFNESS_TEXT = "rods under a pull beyond the shear stiffness"

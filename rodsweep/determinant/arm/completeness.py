@@ -92,8 +92,8 @@ class CompletenessProof(NamedTuple):
 def prove_complete(
     line: float, known_w: Complex, errors: Array, determinant: ArmDeterminant, hull: EigenvalueHull
 ) -> CompletenessProof:
-    """Proof, if possible, that all eigenvalues with Re w >= line are known. line: if positive, or if no hull
-    exists, nothing is proved. known_w, errors: known eigenvalues and their absolute errors, (n,) each. Raises
+    """Proof, if possible, that all eigenvalues with Re w >= line are known. line: if > 0, or without a hull,
+    nothing is proved. known_w, errors: known eigenvalues and their absolute errors, (n,) each. Raises
     FloatingPointError if no elements resolve the arm."""
     # Negated, so that a line of nan proves nothing.
     if not math.isfinite(hull.a) or not line <= 0:

@@ -35,7 +35,8 @@ TIP_LAYER_SETTINGS = TipLayerSettings()
 TIP_LAYER_ORDER = 16
 """Order of the elements of the tip layer. This order resolves exp(kappa u) over a length of
 `TIP_LAYER_SETTINGS.max_tip_element_over_layer_thickness`/kappa to rounding, because `tip_angle_moment_ratio`
-returns T without an error estimate. Order 8 would cause an error of 4e-11 in a numerical abscissa."""
+returns its result without an error estimate. Order 8 would cause an error of 4e-11 in a numerical
+abscissa."""
 
 
 def tip_angle_moment_ratio(rod: Rod) -> float:

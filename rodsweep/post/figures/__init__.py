@@ -38,7 +38,7 @@ DRAW_FUNCTION_BY_TASK: dict[str, Callable[[FigureRequest], str]] = {
 DEFAULT_LOOK = FigureLook()
 """Appearance of figures without options of the user."""
 OMITTED_STATUSES = {"missing": "are not computed", "failed": "failed"}
-"""Statuses of points that no figure shows, with the predicate for such points."""
+"""For each status of points that no figure shows, the predicate of a clause about these points."""
 
 
 def _style_context(look: FigureLook) -> AbstractContextManager[None]:

@@ -95,9 +95,9 @@ class RangeEndPassage:
     without `hopf_beyond_range_end`."""
 
     def is_same_as(self, other: "RangeEndPassage") -> bool:
-        """Whether this passage and the passage `other`, of another branch, are at the same cycle or its
-        mirror image, in either direction: the end of the range, the period and the largest |y| of the tip
-        agree within their errors."""
+        """Whether this passage and the passage `other`, of another branch, are at the same cycle or at mirror
+        images, whichever way the branches pass: the end of the range, the period and the largest |y| of the
+        tip agree within their errors."""
         if self.range_end_index != other.range_end_index:
             return False
         # Small cycles near a Hopf point have uncertain heights, whereas the Hopf point is known.

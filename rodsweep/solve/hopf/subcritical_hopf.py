@@ -45,10 +45,10 @@ def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
     """The subcritical Hopf point nearest to the force of `rod`; None if no candidate is subcritical, or if
     the force is not positive.
 
-    The candidates are the first Hopf point above and the first Hopf point below the force, within a factor of
-    `max_hopf_force_ratio`. A candidate is ignored if, by the normal form, the largest tip y of its unstable
-    cycle exceeds `max_unstable_cycle_y`. The straight rod must be stable. Raises Unsolvable if the search for
-    Hopf points or a coefficient fails.
+    The candidates are the first Hopf point above and the first Hopf point below the force, both within a
+    factor of `max_hopf_force_ratio` of the force. A candidate is ignored if, by the normal form, the largest
+    tip y of its unstable cycle exceeds `max_unstable_cycle_y`. The straight rod must be stable. Raises
+    Unsolvable if the search for Hopf points or a coefficient fails.
     """
     min_force = rod.F / SUBCRITICAL_HOPF_SEARCH_SETTINGS.max_hopf_force_ratio
     max_force = search_end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF_SEARCH_SETTINGS.max_hopf_force_ratio)

@@ -200,7 +200,7 @@ def _end_of_growth_and_excess(
     propagator: Propagator, earliest_end: float, decay_exponent: float
 ) -> tuple[float, float]:
     """Returns (end, excess). end: a time after which |exp(L t)| does not exceed its earlier values. excess:
-    relative amount by which a later norm may nevertheless exceed these values. earliest_end: earliest end, in
+    relative amount by which a norm after `end` may still exceed these values. earliest_end: earliest end, in
     tau2. decay_exponent: the modes beyond the leading one or pair are negligible once they are
     exp(-decay_exponent) times the leading modes.
 

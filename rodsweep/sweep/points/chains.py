@@ -72,7 +72,8 @@ class Chains:
         )
 
     def unsolved_ranges(self, missing: IndexSet) -> list[IndexRange]:
-        """Ranges of the numbers of chains with missing points. missing: flat indices of missing points."""
+        """Ranges of chain numbers: the chains with at least one missing point. missing: flat indices of the
+        missing points."""
         return merged_ranges((n, n + 1) for n in range(self.count) if missing[self.indices(n)].any())
 
 

@@ -19,7 +19,8 @@ MAX_GROUP_POINTS = 128
 """Maximum number of points in a group. The arms of a group share quantities that are computed once per group;
 longer groups would leave fewer work items to the ranks."""
 MIN_GROUP_AXIS_VALUES = 8
-"""Minimum number of values on the axis of groups. On a shorter axis, neighbouring points differ too much."""
+"""Minimum number of values on the axis along which points are grouped. On a shorter axis, neighbouring points
+differ too much."""
 GROUPS_PER_MISSING_POINT_TEST = 1 << 12
 """Number of groups tested for missing points in a single array operation, which bounds the memory."""
 

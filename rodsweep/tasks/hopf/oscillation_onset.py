@@ -21,8 +21,8 @@ from ...model.rod import Rod
 from ...solve.modes.propagator import symmetrised_shifted_inverse
 
 MAX_HALVINGS = 8
-"""Maximum number of halvings of the interval. Without an onset in the interval, because a complex pair
-overtakes the leading real eigenvalue, no number of halvings is sufficient."""
+"""Maximum number of halvings of the interval. If the interval has no onset, because a complex pair overtakes
+the leading real eigenvalue, no number of halvings is sufficient."""
 LEADING_DOUBLE_EIGENVALUE_TOLERANCE = 0.01
 """A double eigenvalue is the leading eigenvalue if its relative distance from the mean of the two leading
 eigenvalues on the mesh is at most this number."""

@@ -113,8 +113,8 @@ class _BoundaryTracingProblem:
 
 
 def boundary_curves_through(plane: ParameterPlane, seeds: list[BoundarySeed]) -> TracedCurves[BoundaryCurve]:
-    """Boundary curves in `plane` through all thresholds `seeds`; no curve is traced from a threshold on a
-    known curve."""
+    """Boundary curves in `plane` through all thresholds `seeds`; a threshold that lies on a curve already
+    traced starts no further curve."""
     problem = _BoundaryTracingProblem(plane, seeds)
     return trace_all_curves(
         problem, range(len(seeds)), BOUNDARY_ASSIGNMENT_SETTINGS.max_distance_of_threshold_on_curve

@@ -52,9 +52,10 @@ def cycle_with_calibrated_errors(
     motion: CycleMotion | None = None,
 ) -> RefinedCycle:
     """The solved orbit `solved` as a cycle, with measures, multipliers and the errors of a calibration that
-    is scaled to this orbit. The error of the largest multiplier includes the effects of the matrix, assembled
-    at a nearby orbit, and of the amplitude error. The errors of the extrema include rounding near a Hopf
-    point or a fold. accuracy: requested relative accuracy. motion: motion of the orbit, if known."""
+    is scaled to this orbit. The error of the largest multiplier includes the effect of a matrix that was
+    assembled at a nearby orbit, and the effect of the amplitude error. The errors of the extrema include
+    rounding near a Hopf point or a fold. accuracy: requested relative accuracy. motion: motion of the orbit,
+    if known."""
 
     motion = motion or CycleMotion(solved.orbit)
     measures = motion.measures

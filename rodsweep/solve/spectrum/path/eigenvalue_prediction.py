@@ -57,8 +57,8 @@ class KnownRoots(NamedTuple):
 
 
 def new_track(first_eigenvalues: Complex, point_count: int) -> FollowedEigenvalues:
-    """A track of `point_count` points; only the first is filled, with `first_eigenvalues`, (m,), in
-    descending order."""
+    """A track of `point_count` points; only the first point is filled, with `first_eigenvalues`, (m,), by
+    descending real part, then frequency."""
     shape = (point_count, len(first_eigenvalues))
     order = np.zeros(shape, np.int64)
     order[0] = np.arange(len(first_eigenvalues))
