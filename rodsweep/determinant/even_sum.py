@@ -24,7 +24,7 @@ from .exponents import (
     EXPONENT_SETTINGS,
     TWO_MACHINE_EPSILONS,
     P_and_squared_exponents,
-    cosh_minus_one_over_z,
+    cosh_sqrt_minus_one_over_z,
     modulus,
     modulus_without_underflow,
 )
@@ -110,8 +110,8 @@ def even_sum_by_squares(
     root_plus = cmath.sqrt(plus)
     root_minus = cmath.sqrt(minus)
     S = max(root_plus.real, root_minus.real)
-    E_plus, E1_plus = cosh_minus_one_over_z(plus, root_plus, S)
-    E_minus, E1_minus = cosh_minus_one_over_z(minus, root_minus, S)
+    E_plus, E1_plus = cosh_sqrt_minus_one_over_z(plus, root_plus, S)
+    E_minus, E1_minus = cosh_sqrt_minus_one_over_z(minus, root_minus, S)
     # z+ - z- is 4 P, without a subtraction.
     difference = 1 / (4 * P)
     s = E_plus + E_minus

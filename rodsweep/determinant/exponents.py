@@ -89,7 +89,7 @@ def P_and_squared_exponents(w: complex, coefficients: Coefficients) -> tuple[com
 
 
 @compiled
-def cosh_minus_one_over_z(z: complex, root: complex, scale: float) -> tuple[complex, complex]:
+def cosh_sqrt_minus_one_over_z(z: complex, root: complex, scale: float) -> tuple[complex, complex]:
     """Returns (E(z), dE/dz), both times exp(-scale), E(z) = (cosh sqrt(z) - 1)/z. root: sqrt(z)."""
     if abs(z) < EXPONENT_SETTINGS.cosh_series_below:
         value = 1 + z / 30 * (1 + z / 56 * (1 + z / 90 * (1 + z / 132 * (1 + z / 182))))

@@ -20,7 +20,7 @@ from .exponents import (
     EXPONENT_SETTINGS,
     TWO_MACHINE_EPSILONS,
     P_and_squared_exponents,
-    cosh_minus_one_over_z,
+    cosh_sqrt_minus_one_over_z,
     modulus,
     modulus_without_underflow,
     scaled_hyperbolic_functions,
@@ -176,8 +176,8 @@ def _error_and_log_scale_by_squares(
     root = cmath.sqrt(large)
     small_root = cmath.sqrt(small)
     S = max(root.real, small_root.real)
-    E, E1 = cosh_minus_one_over_z(large, root, S)
-    small_E, small_E1 = cosh_minus_one_over_z(small, small_root, S)
+    E, E1 = cosh_sqrt_minus_one_over_z(large, root, S)
+    small_E, small_E1 = cosh_sqrt_minus_one_over_z(small, small_root, S)
     size_P = modulus(P)
     error_of_P = terms.error_of_P_squared / size_P / 2
     # The smaller z and its slope follow from z+ z- and its slope; they change with the larger z, too.
@@ -201,7 +201,7 @@ def _error_and_log_scale_by_squares(
 
 @compiled
 def _error_of_cosh_minus_one_over_z(z: complex, root: complex, value: complex, S: float) -> float:
-    """Rounding error of `cosh_minus_one_over_z` at z beyond the error of sqrt(z), `root`. value: E(z)
+    """Rounding error of `cosh_sqrt_minus_one_over_z` at z beyond the error of sqrt(z), `root`. value: E(z)
     exp(-S)."""
     error = modulus(value)
     if modulus(z) >= EXPONENT_SETTINGS.cosh_series_below:

@@ -34,14 +34,14 @@ from .elements.settings import MINOR_COUNT
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ArmValueSettings(KernelConstants):
+class ArmDeterminantSettings(KernelConstants):
     """Settings for D from propagators."""
 
     max_minor_norm: float = 1e100
     """Minors are divided by their norm if the norm is not between 1/max_minor_norm and max_minor_norm."""
 
 
-ARM_VALUE_SETTINGS = ArmValueSettings()
+ARM_DETERMINANT_SETTINGS = ArmDeterminantSettings()
 
 
 @compiled_with_reordered_sums
@@ -65,7 +65,7 @@ def _norm_of_real_minors(x: Array) -> float:
 @compiled
 def _needs_rescaling(size: float) -> bool:
     """Whether minors of the norm `size` must be divided by it."""
-    return not 1 / ARM_VALUE_SETTINGS.max_minor_norm < size < ARM_VALUE_SETTINGS.max_minor_norm
+    return not 1 / ARM_DETERMINANT_SETTINGS.max_minor_norm < size < ARM_DETERMINANT_SETTINGS.max_minor_norm
 
 
 @compiled

@@ -24,7 +24,7 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import ConvergedOrbit, newton_step_if_matrix_distant, solve_by_newton
 from ..orbit.orbit import Orbit, node_time_fractions
 from ..orbit.symmetry import REFLECTION
-from ..spectrum.candidates import CANDIDATE_SETTINGS
+from ..spectrum.candidates import EIGENVALUE_CANDIDATE_SETTINGS
 from ..spectrum.problem import transverse_problem
 from ..unsolvable import Unsolvable
 from .cycles_along_parameter import orbit_followed_in_parameter_steps, predictor_from
@@ -165,7 +165,7 @@ def predicted_orbit_near_hopf(form: StressForm, w: complex, amplitude: float) ->
         raise Unsolvable("the nearby Hopf point is subcritical")
     if not amplitude**2 <= HOPF_START_SETTINGS.max_direct_start_force_distance * rate / -normal.landau.real:
         raise Unsolvable(f"the amplitude {amplitude:g} of the start is too large for the normal form")
-    line = -CANDIDATE_SETTINGS.relative_line_distance_from_last_w * abs(w)
+    line = -EIGENVALUE_CANDIDATE_SETTINGS.relative_line_distance_from_last_w * abs(w)
     if transverse_problem(form.rod).count_right_of(line).number != 2:
         raise Unsolvable(
             f"at F = {form.rod.F:g} a second pair of modes may be unstable, so the normal form does not apply"

@@ -22,7 +22,7 @@ from .problem import TransverseProblem
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CandidateSettings(KernelConstants):
+class EigenvalueCandidateSettings(KernelConstants):
     """Settings for the eigenvalues of a mesh, and for the vertical lines right of which eigenvalues are
     counted."""
 
@@ -56,7 +56,7 @@ class CandidateSettings(KernelConstants):
     """Second part of the distance that `proof_line_distance_in_errors` describes, divided by |w|."""
 
 
-CANDIDATE_SETTINGS = CandidateSettings()
+EIGENVALUE_CANDIDATE_SETTINGS = EigenvalueCandidateSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,9 @@ class Candidates:
             return self
         own, other = self.roots, earlier.roots
         distances = np.abs(other.w[:, None] - own.w)
-        same_distances = CANDIDATE_SETTINGS.max_relative_same_root_distance * np.abs(other.w) + other.error
+        same_distances = (
+            EIGENVALUE_CANDIDATE_SETTINGS.max_relative_same_root_distance * np.abs(other.w) + other.error
+        )
         is_new = (distances > np.maximum(same_distances[:, None], own.error)).all(axis=1)
         united = [np.append(mine, more[is_new]) for mine, more in zip(own[:-1], other[:-1], strict=True)]
         w = united[RootsOfD._fields.index("w")]
@@ -191,8 +193,8 @@ def line_for_proof(last_wanted: complex, error: float) -> float:
     this line are known. last_wanted: the last wanted eigenvalue. error: its absolute error."""
     return min(
         last_wanted.real
-        - CANDIDATE_SETTINGS.proof_line_distance_in_errors * error
-        - CANDIDATE_SETTINGS.relative_proof_line_distance * abs(last_wanted),
+        - EIGENVALUE_CANDIDATE_SETTINGS.proof_line_distance_in_errors * error
+        - EIGENVALUE_CANDIDATE_SETTINGS.relative_proof_line_distance * abs(last_wanted),
         0.0,
     )
 
@@ -214,9 +216,9 @@ def lines_for_count(w: list[complex], mode_count: int) -> list[float]:
     lies to the left of all eigenvalues found.
     """
     wide_gap_over_real_part = (
-        CANDIDATE_SETTINGS.min_wide_gap_over_real_part_if_unstable
+        EIGENVALUE_CANDIDATE_SETTINGS.min_wide_gap_over_real_part_if_unstable
         if w[0].real > 0
-        else CANDIDATE_SETTINGS.min_wide_gap_over_real_part
+        else EIGENVALUE_CANDIDATE_SETTINGS.min_wide_gap_over_real_part
     )
     # Left of the imaginary axis too, so that one count also gives the number of unstable modes.
     rightmost_end = min(w[mode_count - 1].real, 0.0)
@@ -225,13 +227,13 @@ def lines_for_count(w: list[complex], mode_count: int) -> list[float]:
     for right, left in zip(real_parts[:-1], real_parts[1:], strict=True):
         # Relative, because the spacing of the eigenvalues grows with their moduli.
         width = (right - left) / abs(left)
-        if width > CANDIDATE_SETTINGS.min_relative_gap:
+        if width > EIGENVALUE_CANDIDATE_SETTINGS.min_relative_gap:
             # Wider gaps count as equal, because eigenvalues far to the left converge last.
             gaps.append((min(width, wide_gap_over_real_part), (left + right) / 2))
     gaps.sort(key=lambda gap: -gap[0])  # stable sort: the first wide gap stays first
     last_real_part = real_parts[-1]
-    last_line = last_real_part - CANDIDATE_SETTINGS.relative_line_distance_from_last_w * (
+    last_line = last_real_part - EIGENVALUE_CANDIDATE_SETTINGS.relative_line_distance_from_last_w * (
         # If all found eigenvalues grow, the line must still lie left of the axis.
         abs(w[-1]) if last_real_part < 0 else abs(w[0].real) + 1.0
     )
-    return [*(middle for _, middle in gaps[: CANDIDATE_SETTINGS.max_count_lines - 1]), last_line]
+    return [*(middle for _, middle in gaps[: EIGENVALUE_CANDIDATE_SETTINGS.max_count_lines - 1]), last_line]

@@ -74,7 +74,7 @@ def draw_arm_figure(request: FigureRequest) -> str:
         draw_panel(axes, panel, view, names, index)
         _cover_invalid_cells(axes, view, panel, names, index)
     style.draw_shared_legend(figure, column_count=3)
-    shown_names = [*names, DRAG_AXIS] if _has_drag_band(view, names) else names
+    shown_names = [*names, DRAG_AXIS] if _shows_range_over_drags_as_band(view, names) else names
     figure.suptitle(style.heading_text(view, constant_quantities_text(view, shown_names)))
     labels = " and ".join(panel.label for panel in panels)
     constants = {name: place for name, place in indices.items() if name not in shown_names}
@@ -92,7 +92,7 @@ def _quantities_on_axes(view: ResultView) -> list[str]:
     return [name for name in view.arm_axes if name in longest]
 
 
-def _has_drag_band(view: ResultView, names: Sequence[str]) -> bool:
+def _shows_range_over_drags_as_band(view: ResultView, names: Sequence[str]) -> bool:
     """Whether the figure over the quantities `names` shows the range of a result over the drags as a band."""
     has_drags = DRAG_AXIS in view.arm_axes and len(view.variables[DRAG_AXIS]) > 1
     return has_drags and len(names) == 1 and DRAG_AXIS not in names
@@ -151,7 +151,7 @@ def _draw_curves(axes: Axes, panel: Panel, view: ResultView, names: Sequence[str
     for colour, (label, values) in zip(LINE_COLOURS, (lines or {"": panel.values}).items(), strict=False):
         line_format = "o" if name == DRAG_AXIS else "-o"
         axes.plot(x, values[index], line_format, ms=2.5, lw=1.2, color=colour, label=label)
-        if _has_drag_band(view, names):
+        if _shows_range_over_drags_as_band(view, names):
             _draw_drag_band(axes, view, x, values, colour, index)
     style.scale_axis(axes, "x", x)
     if name == DRAG_AXIS:

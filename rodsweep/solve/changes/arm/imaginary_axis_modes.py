@@ -12,7 +12,7 @@ from ...spectrum.status import SpectrumStatus
 from ...unsolvable import Unsolvable
 from ..sample_interpolation import cubic_minimum_and_position, deviation_from_trapezoidal_rule
 from ..spectrum_samples import SPECTRUM_SAMPLE_SETTINGS
-from .imaginary_axis_pairs import IMAGINARY_AXIS_MODE_SETTINGS, ImaginaryAxisPair
+from .imaginary_axis_pairs import IMAGINARY_AXIS_MODE_SETTINGS, PairNearImaginaryAxis
 from .path import ArmPath
 
 NO_EIGENVALUES: Complex = np.empty(0, complex)
@@ -30,13 +30,13 @@ class ArmModes:
     unstable_count: int
     """Number of eigenvalues with Re w > 0."""
 
-    def pairs(self, growing: bool) -> list[ImaginaryAxisPair]:
+    def pairs(self, growing: bool) -> list[PairNearImaginaryAxis]:
         """All growing pairs if `growing`, otherwise all decaying pairs; the pair nearest to the imaginary
         axis comes first."""
         sign = 1.0 if growing else -1.0
         known = zip(list_of(self.w), list_of(self.slopes), strict=True)
         return sorted(
-            ImaginaryAxisPair(sign * w.real, sign * slope.real, w.imag, slope.imag)
+            PairNearImaginaryAxis(sign * w.real, sign * slope.real, w.imag, slope.imag)
             for w, slope in known
             if w.imag > 0 and (w.real > 0) == growing
         )
@@ -205,7 +205,7 @@ def interval_fraction_of_next_count(left: ArmModes, right: ArmModes) -> float:
 
 
 def _may_touch_imaginary_axis_between(
-    left: ImaginaryAxisPair, right: ImaginaryAxisPair, length: float
+    left: PairNearImaginaryAxis, right: PairNearImaginaryAxis, length: float
 ) -> bool:
     """Whether the distance of a pair from the imaginary axis may vanish within an interval although its cubic
     interpolant stays above zero: the tangents of the distance meet below zero, or one tangent falls below
@@ -223,7 +223,9 @@ def _may_touch_imaginary_axis_between(
     return not is_explained or _tangents_meet_below_zero(left, right, length)
 
 
-def _tangents_meet_below_zero(left: ImaginaryAxisPair, right: ImaginaryAxisPair, length: float) -> bool:
+def _tangents_meet_below_zero(
+    left: PairNearImaginaryAxis, right: PairNearImaginaryAxis, length: float
+) -> bool:
     """Whether the distance of a pair from the imaginary axis decreases at the left end of an interval and
     increases at its right end, with tangents that meet below zero: the distance may then vanish between the
     ends. left, right: the pair at the ends. length: length of the interval."""

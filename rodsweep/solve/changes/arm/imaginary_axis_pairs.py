@@ -30,7 +30,7 @@ class ImaginaryAxisModeSettings:
 IMAGINARY_AXIS_MODE_SETTINGS = ImaginaryAxisModeSettings()
 
 
-class ImaginaryAxisPair(NamedTuple):
+class PairNearImaginaryAxis(NamedTuple):
     """A pair of eigenvalues: distance from the imaginary axis and frequency, both in 1/tau2, with their
     derivatives (`distance_slope`, `frequency_slope`) with respect to the path variable p."""
 
@@ -43,7 +43,7 @@ class ImaginaryAxisPair(NamedTuple):
         """Smallest distance from the imaginary axis on the tangent over a change `step` of p."""
         return self.distance + min(step * self.distance_slope, 0.0)
 
-    def is_missing_in(self, pairs: "list[ImaginaryAxisPair]", step: float) -> bool:
+    def is_missing_in(self, pairs: "list[PairNearImaginaryAxis]", step: float) -> bool:
         """Whether this growing pair, by its tangent, is expected among `pairs`, the growing pairs after a
         change `step` of p, but has no counterpart there."""
         distance = self.distance + step * self.distance_slope

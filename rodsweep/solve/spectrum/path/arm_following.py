@@ -26,7 +26,7 @@ from ....determinant.arm.value import determinant_from_propagators, path_value_f
 from ....determinant.roots.roots import roots_of_parabola, sort_indices_descending
 from ....determinant.value import DETERMINANT_SETTINGS, scaled_second_derivative_between
 from ....model.compiled.compilation import compiled
-from ..candidates import CANDIDATE_SETTINGS
+from ..candidates import EIGENVALUE_CANDIDATE_SETTINGS
 from .eigenvalue_following import (
     EIGENVALUE_FOLLOWING_SETTINGS,
     CorrectedEigenvalue,
@@ -189,8 +189,8 @@ def proved_count_right_of_line(
     k = track.descending_order[i, modes - 1]
     line = min(
         w[k].real
-        - CANDIDATE_SETTINGS.proof_line_distance_in_errors * error[k]
-        - CANDIDATE_SETTINGS.relative_proof_line_distance * abs(w[k]),
+        - EIGENVALUE_CANDIDATE_SETTINGS.proof_line_distance_in_errors * error[k]
+        - EIGENVALUE_CANDIDATE_SETTINGS.relative_proof_line_distance * abs(w[k]),
         0.0,
     )
     count = 0

@@ -22,7 +22,7 @@ from ....determinant.certificate.winding_number import count_right_of
 from ....determinant.roots.newton import refine_eigenvalue
 from ....determinant.roots.roots import root_error_and_scales
 from ....model.rod import Rod
-from ..candidates import CANDIDATE_SETTINGS, line_for_proof
+from ..candidates import EIGENVALUE_CANDIDATE_SETTINGS, line_for_proof
 from .eigenvalue_following import are_distinct_roots
 from .eigenvalue_prediction import KnownRoots
 from .leader_in_range import ArmRange, leader_in_range
@@ -187,7 +187,7 @@ def _lines_for_count(w: complex) -> Iterator[float]:
         # Another eigenvalue may lie right of the far line; the near line then excludes it.
         w.real - distance * abs(w)
         for distance in (
-            CANDIDATE_SETTINGS.relative_line_distance_from_leading_w,
-            CANDIDATE_SETTINGS.relative_line_distance_from_last_w,
+            EIGENVALUE_CANDIDATE_SETTINGS.relative_line_distance_from_leading_w,
+            EIGENVALUE_CANDIDATE_SETTINGS.relative_line_distance_from_last_w,
         )
     )
