@@ -46,6 +46,14 @@ def largest_growth_and_wave_number(rod: Rod) -> tuple[float, float]:
     return float(rate), float(wave_number)
 
 
+def growth_rate(rod: Rod, wave_number: float) -> float:
+    """Growth rate, in 1/tau2, of the wave with `wave_number`, in 1/L, on an infinitely long rod with the
+    coefficients of the uniform `rod`; 0 if the wave decays."""
+    F, nu, c2, gamma3 = rod.coefficients
+    K = np.float64(wave_number**2)
+    return float(_growth_rates(K, F * rod.g, rod.g * nu, c2, gamma3))
+
+
 class SampledArm(NamedTuple):
     """Midpoints of short intervals of u along an arm, and the local coefficients at the midpoints. points:
     midpoints, (points,); no midpoint is a break of the profile. interval_lengths: interval lengths,
@@ -178,8 +186,16 @@ def _sampled_growth_and_wave_number(
     """`_scaled_peak_growth_and_wave_number` by comparison of WAVE_NUMBER_SAMPLE_COUNT wave numbers, used if g
     = nu + F c2 <= 0 at any point: under such a pull the growth rate, as a function of the wave number, may
     have its maximum at 0, or no maximum. Arguments: as there, with the shape (..., 1)."""
+    rates = _growth_rates(max_K * SQUARED_WAVE_NUMBER_RATIOS, max_K, damping_at_0, c2, gamma3)
+    max_rate = rates.max(axis=-1)
+    fractions = SQUARED_WAVE_NUMBER_RATIOS[rates.argmax(axis=-1)]
+    return max_rate, np.where(max_rate > 0, np.sqrt(max_K[..., 0] * fractions), 0.0)
+
+
+def _growth_rates(K: Any, max_K: Any, damping_at_0: Any, c2: Any, gamma3: Any) -> Array:
+    """Growth rates of the waves with K = kappa^2, by the dispersion relation of the module; 0 if the wave
+    decays. All arguments broadcast: as in `_scaled_peak_growth_and_wave_number`."""
     product = c2 * gamma3
-    K = max_K * SQUARED_WAVE_NUMBER_RATIOS
     # Both branches of each `where` are evaluated, also where they divide by 0.
     with np.errstate(all="ignore"):
         constant = K * (max_K - K)
@@ -190,7 +206,4 @@ def _sampled_growth_and_wave_number(
         rates_if_damped = np.where(product > 0, (root_of_discriminant - damping) / (2 * product), 0.0)
         rates = np.where(damping > 0, 2 * constant / (damping + root_of_discriminant), rates_if_damped)
     # Also turns nan into a wave that does not grow.
-    rates = np.where(rates > 0, rates, 0.0)
-    max_rate = rates.max(axis=-1)
-    fractions = SQUARED_WAVE_NUMBER_RATIOS[rates.argmax(axis=-1)]
-    return max_rate, np.where(max_rate > 0, np.sqrt(max_K[..., 0] * fractions), 0.0)
+    return np.where(rates > 0, rates, 0.0)

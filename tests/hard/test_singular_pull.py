@@ -7,12 +7,15 @@ tend to those of gamma3 = 0. No a-priori bound holds in the limit (docs/method.m
 there.
 """
 
+import mpmath as mp
 import numpy as np
 import pytest
+from reference import determinant as reference
 from rods import rod_of
 from surveyed import few
 
 from rodsweep.determinant.certificate.winding_number import count_right_of
+from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 
 from .exact import leading, unstable
@@ -55,6 +58,18 @@ def test_the_count_falls_by_the_runaway_modes_in_the_limit_and_nothing_is_proved
     assert unstable((*PULLED, 1e-3)) - unstable(rod) == len(runaways(*PULLED)) == 1
     assert count_right_of(0.0, rod_of(*rod)).number is None
     assert abs(found.eigenvalues[0] / complex(leading(rod, 1)[0]) - 1) < 1e-14
+
+
+@pytest.mark.parametrize("modes", [1, 2, 3])
+@pytest.mark.parametrize("rod", [(-107.517, 2.5685, 1.8414, 5.096e-4), (-61.54, 2636.0, 0.4888, 0.002182)])
+def test_few_modes_of_runaway_rods_start_from_a_mesh_that_has_their_layers(rod, modes):
+    """The first of these rods had `failed` for one mode, `modes_missing` for two, and was ok for three."""
+    found = solve_spectrum(rod_of(*rod), SpectrumRequest(modes, 1e-8, True))
+    assert (found.status, found.certified) == (SpectrumStatus.ok, True)
+    with mp.workdps(60):
+        for w in found.eigenvalues:
+            exact = reference.refine(mp.mpc(complex(w)), *rod)
+            assert abs(exact - complex(w)) < 1e-13 * abs(exact)
 
 
 @pytest.mark.long
