@@ -13,7 +13,6 @@ from ...model.dispersion import (
     most_amplified_local_waves,
     sampled_arm,
 )
-from ...model.local_coefficients import local_coefficient_array
 from ...model.material.rod_material import RodMaterial
 from ...model.rod import Rod
 from ..elements.elements import ELEMENT_SETTINGS, Elements
@@ -187,7 +186,7 @@ def halved_where_coefficients_vary(rod: Rod, mesh: ArmMesh, accuracy: float) -> 
         mesh = halved_mesh
         edges = np.array(mesh.edges)
         points: Array = edges[:-1, None] + mesh.lengths[:, None] * (x + 1) / 2
-        coefficients = local_coefficient_array([rod], points)[:, 0]
+        coefficients = np.stack(np.broadcast_arrays(*rod.local_coefficients(points)))
         omitted = np.abs(coefficients @ last_rows.T).max(axis=2)
         is_halved = (omitted > accuracy * np.abs(coefficients).max(axis=2)).any(axis=0)
         if not is_halved.any():
