@@ -540,12 +540,12 @@ def test_krylov_schur_on_two_meshes_gives_all_but_the_leading_eigenvalue_of_a_pu
 
 
 def test_krylov_schur_on_two_meshes_gives_no_number_where_no_mesh_resolves_boundary_layers():
-    """A pull beyond the shear stiffness makes layers of the thickness 1/2000: two meshes that are too coarse
-    agree to 3e-7 on an eigenvalue with an error of 4e-5."""
+    """A pull beyond the shear stiffness makes layers of the thickness 1/2000 or less: two meshes that are too
+    coarse agree to 3e-7 on an eigenvalue with an error of 4e-5."""
     rod = Rod(F=-1600.0, k1=1e6, k2=2.3, gamma3=2.6e-7)
     result = solve_on_two_meshes(rod, SpectrumRequest(mode_count=1, accuracy=1e-8, certify=False))
     assert result.status == SpectrumStatus.failed
-    assert re.fullmatch(r"none of 9 meshes .* resolves the requested modes", result.message)
+    assert re.fullmatch(r"no mesh of at most \d+ unknowns resolves the requested modes", result.message)
 
 
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-6, 1e-8, 1e-10])
