@@ -5,13 +5,13 @@ import pytest
 from reference.random_arms import random_arm
 
 from rodsweep.determinant.arm.arm_family import interpolated_family
-from rodsweep.determinant.arm.determinant import ArmDeterminant
-from rodsweep.determinant.arm.determinant_along_path import ArmAlongPath
-from rodsweep.determinant.arm.family_values import (
+from rodsweep.determinant.arm.arm_family_values import (
     determinant_of_family_arm,
     eigenvalue_of_family_arm,
     write_propagators,
 )
+from rodsweep.determinant.arm.determinant import ArmDeterminant
+from rodsweep.determinant.arm.determinant_along_path import ArmAlongPath
 from rodsweep.determinant.arm.newton import refine_eigenvalue_and_error
 from rodsweep.determinant.arm.value import path_value_from_propagators
 from rodsweep.determinant.parameter_path import ParameterPath

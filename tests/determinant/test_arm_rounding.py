@@ -7,9 +7,9 @@ import pytest
 from surveyed import RODS
 
 from rodsweep.determinant.arm.arm_family import interpolated_family
+from rodsweep.determinant.arm.arm_family_values import eigenvalue_of_family_arm
 from rodsweep.determinant.arm.determinant import ArmDeterminant, coefficient_samples, elements_for
 from rodsweep.determinant.arm.elements.settings import ARM_ELEMENT_SETTINGS
-from rodsweep.determinant.arm.family_values import eigenvalue_of_family_arm
 from rodsweep.determinant.arm.rounding import rounding_error_from_propagators
 from rodsweep.determinant.arm.value import determinant_from_propagators
 from rodsweep.determinant.parameter_path import ParameterPath

@@ -18,8 +18,8 @@ from ..roots.newton import FAILED_EIGENVALUE, LocatedEigenvalue
 from ..roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
 from ..value import DETERMINANT_SETTINGS, DeterminantValue
 from .arm_family import ArmFamily
+from .arm_family_values import W_and_propagators_at, determinant_of_family_arm, eigenvalue_of_family_arm
 from .determinant import ArmDeterminant, arm_determinant
-from .family_values import W_and_propagators_at, determinant_of_family_arm, eigenvalue_of_family_arm
 from .newton import refine_eigenvalue_and_error
 from .rounding import rounding_error_from_propagators
 from .value import determinant_from_propagators

@@ -85,14 +85,14 @@ def graded_towards_ends(rod: Rod, mesh: ArmMesh) -> ArmMesh:
     thin end, where g < 0, are confined to a small fraction of the last element."""
     wave_numbers = fastest_growing_wave_numbers_at_ends(rod)
     edges = np.array(mesh.edges)
-    first = _division_distances_from_end(float(edges[1]), mesh.order, float(wave_numbers[0]))
-    last = _division_distances_from_end(float(edges[-1] - edges[-2]), mesh.order, float(wave_numbers[1]))
+    first = _end_element_division_distances(float(edges[1]), mesh.order, float(wave_numbers[0]))
+    last = _end_element_division_distances(float(edges[-1] - edges[-2]), mesh.order, float(wave_numbers[1]))
     if not len(first) and not len(last):
         return mesh
     return ArmMesh((0.0, *first, *mesh.edges[1:-1], *(1 - last[::-1]), 1.0), mesh.order)
 
 
-def _division_distances_from_end(length: float, order: int, wave_number: float) -> Array:
+def _end_element_division_distances(length: float, order: int, wave_number: float) -> Array:
     """Distances from an end of the arm, increasing, of the points at which the element at this end is
     divided, (n,). length, order: of this element. wave_number: in 1/L. Empty if the element resolves this
     wave number."""

@@ -29,14 +29,14 @@ the rod's axis."""
 
 
 class _SparsityPattern(NamedTuple):
-    """Sparsity pattern of A for some components on a mesh; it contains the full diagonal. node_rows,
-    node_columns: node indices of the nonzero entries of the weak derivative matrix W D (weights times
-    differentiation matrix), without the column of the tip, (m,). pattern_indices: index in the pattern of
-    each value that `StraightMatrices.A` concatenates. indices, indptr: rows and column starts in scipy's
-    order. diagonal_indices: indices in the pattern of the diagonal entries, (n,)."""
+    """Sparsity pattern of A for some components on a mesh; it contains the full diagonal.
+    weak_derivative_rows, weak_derivative_columns: node indices of the nonzero entries of the weak derivative
+    matrix W D (weights times differentiation matrix), without the column of the tip, (m,). pattern_indices:
+    index in the pattern of each value that `StraightMatrices.A` concatenates. indices, indptr: rows and
+    column starts in scipy's order. diagonal_indices: indices in the pattern of the diagonal entries, (n,)."""
 
-    node_rows: NDArray[np.int_]
-    node_columns: NDArray[np.int_]
+    weak_derivative_rows: NDArray[np.int_]
+    weak_derivative_columns: NDArray[np.int_]
     pattern_indices: NDArray[np.int_]
     indices: NDArray[np.int32]
     indptr: NDArray[np.int32]
@@ -95,11 +95,13 @@ class StraightMatrices:
         form = self.form
         own = list(self.components)
         pattern = self._sparsity_pattern
-        WD = -form.mesh.node_matrices.weak_derivative_matrix.T[pattern.node_rows, pattern.node_columns]
+        WD = -form.mesh.node_matrices.weak_derivative_matrix.T[
+            pattern.weak_derivative_rows, pattern.weak_derivative_columns
+        ]
         strain_rates, forces = (terms[np.ix_(own, own)] for terms in form.A_terms_without_derivative)
         values = (
             np.tile(-WD, len(own)),
-            WD * form.law_derivatives.law_tangent[own][:, pattern.node_columns],
+            WD * form.law_derivatives.law_tangent[own][:, pattern.weak_derivative_columns],
             -(form.nodal_rod.drag * form.mesh.quadrature_weights)[own],
             np.zeros(len(own) * form.mesh.node_count),
             strain_rates,

@@ -13,7 +13,7 @@ from ..plane_curves import PlaneParameters
 from .number_texts import axis_values_text, value_range_text
 from .variable_errors import absolute_errors, known_values_mask
 
-RANGE_PLACEHOLDER_PATTERN = re.compile(r"\{(first )?(\w+)\}")
+VARIABLE_RANGE_PLACEHOLDER_PATTERN = re.compile(r"\{(first )?(\w+)\}")
 """Pattern for the place of a range in a sentence: the name of a variable in braces, like {period}. Of a
 variable with a list at each point, {first growth_rate} stands for the first items of the lists."""
 
@@ -79,7 +79,7 @@ class PointSelection:
                 else self.range_text(name)
             )
 
-        return RANGE_PLACEHOLDER_PATTERN.sub(text, template)
+        return VARIABLE_RANGE_PLACEHOLDER_PATTERN.sub(text, template)
 
     def parameter_ranges_text(self) -> str:
         """Ranges of the varied parameters as text; empty if no parameter varies in the file."""

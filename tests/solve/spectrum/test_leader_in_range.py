@@ -92,7 +92,7 @@ def test_a_range_proves_no_eigenvalue_that_does_not_lead():
 def test_a_chain_without_use_for_a_range_has_none():
     """Uniform rods, steps that are too long, repeated rods; a range without proofs is given up."""
     near = np.array([-1.0 + 20j])
-    step = ARM_RANGE_SETTINGS.max_relative_length / ARM_RANGE_SETTINGS.min_chain_steps
+    step = ARM_RANGE_SETTINGS.max_relative_length / ARM_RANGE_SETTINGS.min_chain_steps_per_range
     beside = ARM.with_values(F=ARM.F * (1 + 0.5 * step))
     assert next_range(ARM, beside, "F", None, near) is not None
     uniform = [Rod(F=rod.F, k1=1e4, k2=1e2, gamma3=1e-2) for rod in (ARM, beside)]

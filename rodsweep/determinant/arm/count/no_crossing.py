@@ -25,10 +25,10 @@ from ....arrays import Array, Complex, list_of
 from ....model.compiled.compilation import compiled
 from ....model.rod import Rod
 from ..arm_family import ArmFamily
+from ..arm_family_values import W_and_propagators_at
 from ..completeness import is_real_or_conjugate_known
 from ..determinant import ArmDeterminant, coefficient_samples, elements_for
 from ..elements.propagators import element_propagators
-from ..family_values import W_and_propagators_at
 from ..hull.region import EigenvalueHull, PathHulls
 from ..local_waves import ExponentSamples, mean_wave_number_and_w_scale
 from ..value import determinant_from_propagators, scaled_determinant_from_propagators

@@ -22,7 +22,7 @@ from .special_curve_tracer import SpecialCurveTracer
 from .special_curves import CurveEndReason, SpecialPointCurve
 from .special_point import RowSpecialPoint, SpecialPoint
 
-MAX_CURVE_AND_ROW_STAGES = 8
+MAX_STAGES_OF_CURVES_OR_ROWS = 8
 """Maximum number of stages of a diagram: stages of curves and stages of rows alternate, and each finds fewer
 branches than the stage before. `show` names the rows with cycles that this search does not reach."""
 WorkItemResults = Mapping[int, dict[str, Array]]
@@ -69,7 +69,7 @@ class DiagramStages:
     def stages(self, results: WorkItemResults) -> list[DiagramStage]:
         """All stages that follow from the results of work items; only the last stage may be incomplete."""
         stages: list[DiagramStage] = [self.first_stage]
-        while len(stages) < MAX_CURVE_AND_ROW_STAGES and not stages[-1].items_to_solve(results):
+        while len(stages) < MAX_STAGES_OF_CURVES_OR_ROWS and not stages[-1].items_to_solve(results):
             next_stage = self._stage_after(stages, results)
             if next_stage is None:
                 break

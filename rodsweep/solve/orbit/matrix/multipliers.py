@@ -14,7 +14,7 @@ import numpy as np
 from ....arrays import Array, Complex
 from ....determinant.exponents import EXPONENT_SETTINGS
 from ....model.compiled.compilation import compiled_with_reordered_sums
-from ...backend.small_eigenvalues import small_matrix_eigenvalues
+from ...backend.small_matrix_eigenvalues import small_matrix_eigenvalues
 from ..orbit import Orbit
 
 

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from ....arrays import Array, Complex
 from ....determinant.arm.arm_family import ArmFamily
+from ....determinant.arm.arm_family_values import write_propagators
 from ....determinant.arm.completeness import (
     COMPLETENESS_SETTINGS,
     points_right_of_hull,
     proves_completeness,
     sum_over_unknown_eigenvalues,
 )
-from ....determinant.arm.family_values import write_propagators
 from ....determinant.arm.hull.region import EigenvalueHull, PathHulls, hull_at
 from ....determinant.arm.rounding import error_from_interpolated_propagators
 from ....determinant.arm.value import determinant_from_propagators, path_value_from_propagators

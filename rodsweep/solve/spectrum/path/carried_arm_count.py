@@ -11,11 +11,11 @@ from itertools import pairwise
 import numpy as np
 
 from ....arrays import Array, Complex, list_of
+from ....determinant.arm.arm_family_values import W_and_propagators_at
 from ....determinant.arm.count.count import count_right_of
 from ....determinant.arm.count.no_crossing import proves_no_crossing_of_arms, sampled_point_indices
 from ....determinant.arm.count.settings import NO_CROSSING_SETTINGS
 from ....determinant.arm.determinant import ArmDeterminant
-from ....determinant.arm.family_values import W_and_propagators_at
 from ....determinant.arm.hull.region import hull_at
 from ....determinant.parameter_path import ParameterPath
 from ..candidates import lines_for_count

@@ -38,7 +38,7 @@ class ArmRangeSettings(KernelConstants):
     """Largest length of a range, in the coordinate of the varied parameter, divided by the coordinate at the
     start of the range. 0.2 is the change of the parameter after which a chain of cycles measures the errors
     of its mesh again."""
-    min_chain_steps: int = 8
+    min_chain_steps_per_range: int = 8
     """A range is chosen only if it contains at least this many steps of the chain: the propagators of a range
     take the time of about five single arms."""
     hull_count: int = 5
@@ -51,7 +51,7 @@ class ArmRangeSettings(KernelConstants):
     """Maximum number of ranges whose propagators are cached; a chain of rods uses one range at a time."""
     field_ranges: ClassVar = {
         "hull_count": (2, inf),
-        "min_chain_steps": (1, inf),
+        "min_chain_steps_per_range": (1, inf),
         "max_successive_failures": (1, inf),
     }
     """Exclusive bounds (lower, upper) of a field, by name of the field."""
@@ -89,8 +89,8 @@ def next_range(
     rod: Rod, previous_rod: Rod, name: str, current: ArmRange | None, eigenvalues: Complex
 ) -> ArmRange | None:
     """The range that contains the next arm of a chain: `current` if possible; None for uniform rods, for a
-    step of length 0 or a step so long that fewer than `min_chain_steps` steps fit into a range, and if
-    `current` is `NO_RANGE`.
+    step of length 0 or a step so long that fewer than `min_chain_steps_per_range` steps fit into a range, and
+    if `current` is `NO_RANGE`.
 
     rod, previous_rod: the last two rods of the chain. name: the varied parameter. current: range of `rod`,
     `NO_RANGE` or None. eigenvalues: followed eigenvalues of `rod`, (n,), the leading eigenvalue first."""
@@ -99,7 +99,7 @@ def next_range(
     if current is not None and (current is NO_RANGE or current.low <= start + step <= current.high):
         return None if current is NO_RANGE else current
     max_length = ARM_RANGE_SETTINGS.max_relative_length * abs(start)
-    is_long = abs(step) * ARM_RANGE_SETTINGS.min_chain_steps > max_length
+    is_long = abs(step) * ARM_RANGE_SETTINGS.min_chain_steps_per_range > max_length
     if rod.is_uniform or step == 0 or is_long or not np.isfinite(eigenvalues).all():
         return None
     low, high = sorted((start, start + floor(max_length / abs(step)) * step))
