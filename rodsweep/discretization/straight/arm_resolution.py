@@ -185,8 +185,12 @@ def halved_where_coefficients_vary(rod: Rod, mesh: ArmMesh, accuracy: float) -> 
     while halved_mesh.unknown_count <= settings.max_unknowns_of_halved_elements:
         mesh = halved_mesh
         edges = np.array(mesh.edges)
-        points: Array = edges[:-1, None] + mesh.lengths[:, None] * (x + 1) / 2
-        coefficients = np.stack(np.broadcast_arrays(*rod.local_coefficients(points)))
+        starts = edges[:-1, None]
+        distances = mesh.lengths[:, None] * (x + 1) / 2
+        points: Array = starts + distances
+        # Rounded points of a short element give a noise that halving does not reduce.
+        remainder = distances - (points - starts)
+        coefficients = np.stack(np.broadcast_arrays(*rod.local_coefficients(points, remainder)))
         omitted = np.abs(coefficients @ last_rows.T).max(axis=2)
         is_halved = (omitted > accuracy * np.abs(coefficients).max(axis=2)).any(axis=0)
         if not is_halved.any():

@@ -206,6 +206,16 @@ def test_elements_are_halved_only_where_the_stiffness_varies_quickly():
         assert mesh.edges == arm_elements(slow, 15.0, 1e-20).edges
 
 
+def test_elements_of_a_short_ramp_are_halved_as_often_as_those_of_a_long_one():
+    """Halving does not reduce the rounding of points, a 1e-10th of a ramp of length 1e-6."""
+    numbers = []
+    for end in (0.501, 0.500001):
+        profile = k3_profile((0.0, 0.5, end, 1.0), (1, 1, 0.01, 0.01))
+        mesh = mesh_for(replace(NOTCHED, material=RodMaterial(profile=profile)), 15.0, 1e-24)
+        numbers.append(mesh.element_count)
+    assert 3 < numbers[0] == numbers[1] < 10
+
+
 def test_elements_are_not_halved_beyond_the_largest_mesh():
     """Where no allowed mesh resolves the stiffness, the error says so."""
     rods = [
