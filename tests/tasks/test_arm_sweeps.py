@@ -134,7 +134,7 @@ def test_other_units_ask_for_the_same():
         ("spectrum", {"poisson": [0.3, 0.5]}, {"k2": 100}, "poisson has several values but changes only k2"),
         ("spectrum", {"length": ["1 cm", "2 cm"]}, {}, "parameters.arm.length = 0.01 m is 2 radii"),
         ("spectrum", {"young": [500, 1000]}, {}, "pressure = 2000 Pa crushes the arm"),
-        ("spectrum", {"young": ["90 kPa", "1 MPa"]}, {"k1": 2}, "parameters.k1 is 2 and every F is above"),
+        ("spectrum", {"young": ["90 kPa", "1 MPa"]}, {"k1": 2}, "parameters.k1 = 2 is below every F"),
         ("spectrum", {"poisson": [0.3, 0.6], "length": [0.1, 0.2]}, {}, "arm.poisson = 0.6 is not"),
         ("spectrum", {"radius": "-5 mm", "pressure": None}, {}, "arm.radius = -0.005 m is not above 0"),
         ("thresholds", {"young": 0}, {}, "parameters.arm.young = 0 Pa is not above 0"),

@@ -197,9 +197,9 @@ def _max_argument_sum(points: Array, a: float, c: float) -> float:
 def sum_over_unknown_eigenvalues(
     line: float, known: Complex, error: Array, hull: EigenvalueHull, points: Array, level: tuple[float, Array]
 ) -> Remainder:
-    """The sum R of prod_j 1/(x_j - w) over the unknown eigenvalues w. line: Re w of the vertical line. known,
-    error: known eigenvalues, closed under conjugation, and their errors, (n,) each. points: real x_j,
-    increasing, (k,). level: (W, propagators for |w| <= W), W at least the largest x_j."""
+    """R, the sum of prod_j 1/(x_j - w) over the unknown eigenvalues w, and the least that one right of Re w =
+    `line` in `hull` adds. known, error: known eigenvalues, closed under conjugation, and errors, (n,) each.
+    points: real x_j, increasing, (k,). level: (W, propagators for |w| <= W), W at least the largest x_j."""
     k = len(points)
     R = 0.0
     rounding = 0.0

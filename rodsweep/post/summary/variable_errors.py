@@ -98,9 +98,9 @@ def relative_power_error(variables: Mapping[str, np.ndarray], fluctuation: bool 
     """Relative error of the mean power of cycles, or of the rms fluctuation of the power if `fluctuation`.
     variables: variables of the file, of equal shapes.
 
-    The mean power is proportional to the squared amplitude. In an integrated cycle, which has no multiplier,
-    injection and dissipation have a common error from the interpolation between steps, at most about the
-    error of the extrema.
+    The error includes the energy imbalance. For an integrated cycle, which has no multiplier, it also
+    includes the error of the extrema: injection and dissipation then have a common error from the
+    interpolation between steps, at most about as large.
     """
     error = (
         2 * variables["amplitude_error"] + variables["period_error"] + np.abs(variables["energy_imbalance"])

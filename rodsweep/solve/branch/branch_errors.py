@@ -116,8 +116,8 @@ class BranchErrorCalibration:
         return cheapest_mesh(self._errors_for_mesh_choice, accuracy)
 
     def cheapest_mesh_at_equal_deflection(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh on which the parameter at equal deflection is predicted to have the relative
-        accuracy `accuracy`."""
+        """The cheapest mesh on which the predicted relative error of the parameter at equal deflection does
+        not exceed `accuracy`; the next finer mesh if no mesh within the limits of planning suffices."""
         return cheapest_mesh(self._calibration_with_parameter_errors, accuracy)
 
     @property

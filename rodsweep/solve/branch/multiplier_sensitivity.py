@@ -21,7 +21,7 @@ class MultiplierSensitivitySettings:
 
     max_coalescence_distance: float = 0.3
     """Relative distance between two multipliers below which their errors are assumed to grow with the
-    reciprocal of this distance. At larger distances the growth, at most 1/0.3, is covered by the safety
+    reciprocal of this distance. At larger distances the growth, at most 1/0.3, is left to the safety
     factor of 3 on errors of multipliers."""
 
 

@@ -168,8 +168,8 @@ class BautinProblem:
 
     @staticmethod
     def _zero_by_secants(curve: HopfNormalForms, start: Array, direction: Array) -> BautinPoint:
-        """The point with Re c = 0 near the line start + s direction, (3,), by secant steps of s; raises
-        Unsolvable."""
+        """The point with Re c = 0 near the line start + s direction, by secant steps of s; raises Unsolvable.
+        start, direction: (3,)."""
         # Secants, because the normal form does not give the derivatives of Re c.
         previous_s = 0.0
         s = BAUTIN_SETTINGS.first_secant_step

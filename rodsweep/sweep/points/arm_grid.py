@@ -175,7 +175,7 @@ def _refuse_grid_without_rods(
         )
     k1 = float(given_parameters["k1"][0])
     raise ValueError(
-        f"parameters.k1 is {k1:.15g} and every F is above, where the rod is crushed; F must start below k1"
+        f"parameters.k1 = {k1:.15g} is below every F, so the rod is crushed; lower the load or raise k1"
     )
 
 

@@ -56,8 +56,8 @@ def modulus_sum_of_form_from_sizes(a: Array, sizes: Array, t: float, x: Array) -
 def minor_sm_modulus_sum(C: Array, x: Array) -> float:
     """Sum of the moduli of the products of entries of C and x that add up to the minor s^m at the end of an
     element. Near a root of D these products cancel, and the rounding error of D is relative to this sum, not
-    to |s^m|. C: propagator, (2 or more, PROPAGATOR_LENGTH). x: minors at the start of the element, (2,
-    MINOR_COUNT)."""
+    to |s^m|. C: propagator, (2 or more, PROPAGATOR_LENGTH), with rows RE and IM. x: minors at the start of
+    the element, real and imaginary parts, (2, MINOR_COUNT)."""
     total = 0.0
     for j in range(MINOR_COUNT):
         entry = complex(C[RE, MINOR_COUNT * j + SM], C[IM, MINOR_COUNT * j + SM])

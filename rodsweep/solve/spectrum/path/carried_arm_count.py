@@ -153,7 +153,7 @@ class ArmCountCarrier:
 
     def _store_proved_counts_between(self, points: list[int], lines: list[float]) -> None:
         """Fills `interval.proved_counts` from points[k] to points[k + 1] by counts to the right of Re w =
-        lines[k], except where a followed eigenvalue is within its error of this line."""
+        lines[k]; a point with a followed eigenvalue within twice its error of this line keeps its count."""
         for (first, last), line in zip(pairwise(points), lines, strict=True):
             part = slice(first, last + 1)
             w = self.w[part]
