@@ -27,9 +27,13 @@ class ModeIterationSettings:
     """Number of inverse iterations per eigenvalue; two suffice unless the eigenvalue is nearly double."""
     conjugate_tolerance: float = 1e-12
     """An eigenvalue w is the conjugate v* of its predecessor v if |w - v*|/|w| is at most this."""
-    max_correction: float = 1e-8
-    """Largest entry of a correction of an eigenvector with largest entry 1. The neglected terms of second
-    order are then below rounding; larger corrections, next to a double eigenvalue, are not used."""
+    max_correction: float = 1e-4
+    """Largest entry of a correction of an eigenvector with largest entry 1. Larger corrections, next to a
+    double eigenvalue, are not used."""
+    max_last_correction: float = 1e-8
+    """After a larger correction another follows: the neglected terms of second order may exceed rounding."""
+    correction_count: int = 2
+    """Largest number of corrections of an eigenvector."""
     rounding_safety_factor: float = 8.0
     """Factor from estimates to the stated rounding errors. For a mode, the estimate is the sum of the effect
     of one random pattern of rounding errors, the rms error of the tip displacement, which is the unit of the
@@ -91,18 +95,18 @@ def factorised_pencil(matrix: StiffnessMatrix, B: Array, w: complex) -> Factoris
 
 def null_vectors(pencil: FactorisedPencil) -> tuple[NDArray, NDArray]:
     """Right and left null vector of A - w diag(B), (unknowns,) each, with largest entry 1; real for real w.
-    Inverse iteration gives them, and a correction reduces their error to the rounding of a product with A."""
-    vectors = _null_vector(pencil, 0), _null_vector(pencil, 1)
-    corrected = []
-    for side, vector in enumerate(vectors):
-        correction = pencil.correction(vectors, side)
-        corrected.append(vector - correction if _is_applied(correction) else vector)
-    return corrected[0], corrected[1]
-
-
-def _is_applied(correction: NDArray) -> bool:
-    """Whether a correction is so small that the terms of second order are below rounding."""
-    return float(np.abs(correction).max()) <= MODE_ITERATION_SETTINGS.max_correction
+    Inverse iteration gives them, and corrections reduce their error to the rounding of a product with A."""
+    settings = MODE_ITERATION_SETTINGS
+    right, left = _null_vector(pencil, 0), _null_vector(pencil, 1)
+    for _ in range(settings.correction_count):
+        corrections = [pencil.correction((right, left), side) for side in (0, 1)]
+        right, left = (
+            vector - correction if np.abs(correction).max() <= settings.max_correction else vector
+            for vector, correction in zip((right, left), corrections, strict=True)
+        )
+        if np.abs(corrections).max() <= settings.max_last_correction:
+            break
+    return right, left
 
 
 def _null_vector(pencil: FactorisedPencil, side: int) -> NDArray:
@@ -146,8 +150,9 @@ def effects_of_rounding(
     """Effects of rounding errors on `vectors`, right and left null vector, (unknowns,) each. tip: index
     of the tip displacement."""
     B = pencil.B
-    is_corrected = all(_is_applied(pencil.correction(vectors, side)) for side in (0, 1))
-    # Vectors that were not corrected have the rounding errors of the factorised matrix.
+    corrections = [pencil.correction(vectors, side) for side in (0, 1)]
+    is_corrected = np.abs(corrections).max() <= MODE_ITERATION_SETTINGS.max_last_correction
+    # Vectors that are not corrected to the last have the rounding errors of the factorised matrix.
     matrix = pencil.matrix if is_corrected else StiffnessMatrix(pencil.matrix.A, np.zeros((0, 0)))
     signs = _rounding_signs(len(B))
     perturbed = []

@@ -196,6 +196,26 @@ def test_errors_of_modes_are_below_their_estimates_where_the_stiffness_varies(ro
     assert result.mode_vectors.condition_error.max() < 1e-13
 
 
+SHORT_RAMP_FIELDS = [
+    (1.2585324595717289, 0.005502522090885092, 1.2565309002067213),
+    (3.7775520371796145, 0.23271951376964833, 3.780552619987609),
+    (3.9443906473842327, 2.587921919787947, 3.944490128074898),
+]
+"""Theta, Pi and Theta+ at the 21st of 33 nodes of three modes, as `NOTCHED_FIELDS`, with the order 20."""
+
+
+@pytest.mark.kernel
+def test_large_errors_of_inverse_iteration_are_corrected():
+    """Inverse iteration with elements of length 1e-7 leaves errors of 1e-6."""
+    ramp = RodMaterial(profile=k3_profile((0.0, 0.5, 0.500001, 1.0), (1, 1, 100, 100)))
+    rod = Rod(F=0.1, k1=1e4, k2=1e3, gamma3=1e-3, material=ramp)
+    modes = solve_modes(rod, ModesRequest(3, 1e-10, 33, computes_growth=False)).mode_vectors
+    errors = abs(modes.fields[[1, 3, 5], :, 20] - np.transpose(SHORT_RAMP_FIELDS))
+    assert (errors.max(axis=0) <= 1e-11).all()
+    assert modes.mode_error.max() < 5e-5
+    assert modes.condition_error.max() < 1e-12
+
+
 def test_elements_are_halved_only_where_the_stiffness_varies_quickly():
     edges = np.array(mesh_for(NOTCHED, 15.0, 1e-20).edges)
     rows = {0.0, 0.4, 0.5, 0.6, 1.0}
