@@ -6,7 +6,7 @@ coefficients. For every other arm, D is computed from propagators and the pencil
 
 from abc import ABC, abstractmethod
 from functools import cached_property
-from math import isfinite, pi, sqrt
+from math import isfinite, sqrt, tau
 from typing import Any, ClassVar
 
 import numpy as np
@@ -73,12 +73,12 @@ class TransverseProblem(ABC):
 
     @property
     def shortest_growing_wave_clause(self) -> str:
-        """Clause with the shortest growing wave and a remedy, for a message that no mesh resolves it."""
-        if not self.largest_growing_wave_number:
+        """Clause with what is too short for a mesh, waves or the layers of a pulled rod, and a remedy."""
+        if not (q := self.largest_growing_wave_number):
             return ""
         taper_clause = " or a larger taper" if self.rod.taper < 1 else ""
-        wavelength = 2 * pi / self.largest_growing_wave_number
-        return f": waves as short as {wavelength:.1g} L grow; a smaller |F|{taper_clause} makes them longer"
+        cause = "boundary layers are short" if self.rod.F < 0 else f"waves as short as {tau / q:.1g} L grow"
+        return f": {cause}; a smaller |F|{taper_clause} makes them longer"
 
     @abstractmethod
     def mesh_for(self, mode_count: int, accuracy: float) -> Any:

@@ -548,6 +548,20 @@ def test_krylov_schur_on_two_meshes_gives_no_number_where_no_mesh_resolves_bound
     assert re.fullmatch(r"no mesh of at most \d+ unknowns resolves the requested modes", result.message)
 
 
+@pytest.mark.parametrize(
+    ("rod", "cause"),
+    [
+        (Rod(F=-100.0, k1=1e4, k2=50.0, gamma3=1e-12), "boundary layers are short"),
+        (Rod(F=1e9, k1=INF, k2=INF, gamma3=0.0), r"waves as short as 0\.\d+ L grow"),
+    ],
+)
+def test_a_rod_that_no_mesh_resolves_says_what_is_too_short(rod, cause):
+    """The waves that grow in the pulled rod are 60 times as long as the rod."""
+    result = solve_spectrum(rod, SpectrumRequest(mode_count=1, accuracy=1e-10, certify=False))
+    assert result.status == SpectrumStatus.failed
+    assert re.search(rf"the requested modes: {cause}; a smaller \|F\| makes them longer$", result.message)
+
+
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-6, 1e-8, 1e-10])
 @pytest.mark.parametrize(
     ("onset", "k1", "k2"),
