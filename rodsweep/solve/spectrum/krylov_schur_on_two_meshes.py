@@ -44,6 +44,9 @@ class TwoMeshSettings:
     scaled_rounding_error: float = 3e-13
     """Rounding error of an eigenvalue w, divided by |w| + |shift| + F^2. F^2 is included because the first
     eigenvalue of a pulled rod is exponentially small compared with F^2."""
+    scaled_rounding_error_beyond_shear_stiffness: float = 3e-11
+    """`scaled_rounding_error` of a rod that is pulled beyond its shear stiffness anywhere, g < 0: ten times
+    the largest error of 60 such rods, whose growing modes have thin layers at the ends."""
     min_unknowns_per_mode: int = 3
     """Minimum number of unknowns of a mesh per requested eigenvalue: a third of the unknowns have no time
     derivative, and the highest modes of a mesh are not resolved."""
@@ -80,8 +83,9 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
         if is_resolved and len(eigenvalues.w):
             rounding_scale = _rounding_scale(problem)
             error = _errors_between_meshes(
-                eigenvalues.w, coarser_eigenvalues.w, abs(problem.shift), rounding_scale
-            )
+                eigenvalues.w, coarser_eigenvalues.w, abs(problem.shift), rounding_scale,
+                _scaled_rounding_error(rod),
+            )  # fmt: skip
             spectrum = _spectrum_of_mesh(problem, request, mesh, eigenvalues, error)
             if spectrum.status == SpectrumStatus.ok:
                 return spectrum
@@ -110,7 +114,7 @@ def _missed_accuracy_text(problem: TransverseProblem, request: SpectrumRequest, 
     moduli = np.abs(spectrum.eigenvalues)
     relative_errors = spectrum.error_estimate / moduli
     index = int(np.argmax(relative_errors))
-    rounding_error = TWO_MESH_SETTINGS.scaled_rounding_error * (moduli[index] + _rounding_scale(problem))
+    rounding_error = _scaled_rounding_error(problem.rod) * (moduli[index] + _rounding_scale(problem))
     cause = "rounding errors" if rounding_error > request.accuracy * moduli[index] else "the meshes"
     max_error = float(relative_errors[index])
     return (
@@ -122,6 +126,13 @@ def _missed_accuracy_text(problem: TransverseProblem, request: SpectrumRequest, 
 def _rounding_scale(problem: TransverseProblem) -> float:
     """Sum of |shift| and F^2, in 1/tau2: rounding errors of eigenvalues are proportional to this rate."""
     return abs(problem.shift) + problem.rod.F**2
+
+
+def _scaled_rounding_error(rod: Rod) -> float:
+    """Rounding error of an eigenvalue w of a rod, divided by |w| + |shift| + F^2."""
+    if (sampled_arm(rod).local_coefficients.g < 0).any():
+        return TWO_MESH_SETTINGS.scaled_rounding_error_beyond_shear_stiffness
+    return TWO_MESH_SETTINGS.scaled_rounding_error
 
 
 class _MeshEigenvalues(NamedTuple):
@@ -170,25 +181,27 @@ def _are_waves_represented(rod: Rod, w: Complex, mesh: AnyMesh) -> bool:
     return len(w) > 0 and bool(is_represented.all())
 
 
-def _errors_between_meshes(w: Complex, coarser_w: Complex, shift: float, rounding_scale: float) -> Array:
+def _errors_between_meshes(
+    w: Complex, coarser_w: Complex, shift: float, rounding_scale: float, scaled_rounding_error: float
+) -> Array:
     """Absolute errors of the sorted eigenvalues w, (k,), from the unsorted eigenvalues `coarser_w`, (l,), of
     a coarser mesh.
 
-    shift: modulus of the shift. rounding_scale: result of `_rounding_scale`. Two meshes may agree on one
-    eigenvalue by chance. The mesh error of an eigenvalue is therefore the largest of three relative
-    differences between the meshes: the difference of the eigenvalue itself, and the differences of its two
-    neighbours less their rounding errors. Rounding errors, which are larger near a double eigenvalue, are
-    added.
+    shift: modulus of the shift. rounding_scale, scaled_rounding_error: results of `_rounding_scale` and
+    `_scaled_rounding_error`. Two meshes may agree on one eigenvalue by chance. The mesh error of an
+    eigenvalue is therefore the largest of three relative differences between the meshes: the difference of
+    the eigenvalue itself, and the differences of its two neighbours less their rounding errors. Rounding
+    errors, which are larger near a double eigenvalue, are added.
     """
     moduli = np.abs(w)
     separations = np.abs(w[:, None] - w) + np.diag(np.full(len(w), np.inf))
     # Close eigenvalues are ill-conditioned: a rounding error e of w changes the product (v - w1) (v - w2) by
     # e |w|, and hence a double eigenvalue by the square root of e |w|.
-    squared_errors = TWO_MESH_SETTINGS.scaled_rounding_error * (moduli + shift) * moduli
+    squared_errors = scaled_rounding_error * (moduli + shift) * moduli
     crowding_errors = np.minimum(
         squared_errors / separations.min(axis=1, initial=np.inf), np.sqrt(squared_errors)
     )
-    rounding_errors = TWO_MESH_SETTINGS.scaled_rounding_error * (moduli + rounding_scale) + crowding_errors
+    rounding_errors = scaled_rounding_error * (moduli + rounding_scale) + crowding_errors
     distances = np.abs(w[:, None] - coarser_w).min(axis=1)
     # In a cluster the nearest eigenvalue of the coarser mesh may be a neighbour's, so neighbours count too.
     # The leading eigenvalue of a pulled rod, a rounding error, says nothing about the next one.
