@@ -75,8 +75,9 @@ def test_multipliers_far_from_the_matrix_are_not_corrected(cycle):
     assert corrected_linearisation(nearby, cycle.orbit, cycle.unit_tangent, 1e-8) is None
 
 
-def test_multipliers_near_the_circle_are_accurate_beside_multipliers_of_a_million():
-    """A cycle at the third Hopf point: two multipliers are 1.0 and 0.97, the largest have moduli of 1e6."""
+def test_multipliers_near_the_circle_are_not_corrected_beside_multipliers_of_a_million():
+    """A cycle at the third Hopf point: two multipliers are 1.0 and 0.97, the largest have moduli of 1e6. With
+    the BLAS kernel Haswell the corrected multiplier 0.97 had an error of 6e-5, to a tolerance of 1e-6."""
     path = ParameterPath(Rod(F=0.0, k1=1e4, k2=20.0, gamma3=1e-3), "F")
     crossing = find_imaginary_axis_crossings(path, 0.0, 100.0).thresholds[2]
     cycle = first_cycle(hopf_branch_start(path, crossing), ACCURACY, NewtonWorkspace())
@@ -85,10 +86,8 @@ def test_multipliers_near_the_circle_are_accurate_beside_multipliers_of_a_millio
     workspace = NewtonWorkspace()
     for distance in (1e-5, 1e-4, 1e-3):
         nearby = BorderedMatrix(moved(cycle, distance), cycle.scale, workspace)
-        corrected = corrected_linearisation(nearby, cycle.orbit, cycle.unit_tangent, 1e-6)
-        if corrected is not None:  # otherwise a matrix at the cycle gives the multipliers
-            multipliers = corrected.multipliers_over_solved_time_interval
-            assert np.abs(multipliers[:, None] - sorted_by_modulus(there, 6)[4:]).min(axis=0).max() <= 1e-5
+        # A matrix at the cycle then gives the multipliers.
+        assert corrected_linearisation(nearby, cycle.orbit, cycle.unit_tangent, 1e-6) is None
 
 
 def test_corrected_linearisation_needs_the_factors_of_its_matrix(cycle):

@@ -39,6 +39,9 @@ class LinearisationCorrectionSettings:
     """Multipliers over the solved part of the period, half a period for a symmetric orbit, are not corrected
     if their moduli are smaller: the errors of these multipliers have no effect on stability or special
     points."""
+    max_corrected_multiplier_modulus: float = 1e4
+    """No multiplier is corrected if one over the solved part of the period has a larger modulus: beside a
+    modulus of 1e6 rounding scatters multipliers near 1 by 1e-4."""
     tangent_tolerance: float = 1e-5
     """Relative tolerance of the tangent, which serves for predictions and for the signs at folds."""
     max_correction_steps: int = 4
@@ -160,8 +163,8 @@ class _CorrectedInvariantSubspaces:
     @classmethod
     def at_matrix(cls, matrix: BorderedMatrix) -> "_CorrectedInvariantSubspaces | None":
         """The subspaces at the orbit of `matrix`. None if no multiplier is large enough to be corrected, if
-        the propagator is not finite, or if rounding errors put the two multipliers of a pair on different
-        sides of the smallest corrected modulus."""
+        one is too large, if the propagator is not finite, or if rounding errors put the two multipliers of a
+        pair on different sides of the smallest corrected modulus."""
         orbit = matrix.orbit
         G = orbit.symmetry.apply_inverse_to_flow(matrix.propagator, orbit.form.layout)
         Q, R = low_rank_factors(np.ascontiguousarray(G), FLOQUET_MULTIPLIER_SETTINGS.negligible_column_ratio)
@@ -175,6 +178,8 @@ class _CorrectedInvariantSubspaces:
         if count != left_count or count == 0:
             return None
         values = real_parts + 1j * imaginary_parts
+        if np.abs(values).max() > LINEARISATION_CORRECTION_SETTINGS.max_corrected_multiplier_modulus:
+            return None
         return cls(matrix, right[:, :count].T @ Q, left[:, :count].T @ R, values)
 
     @property
