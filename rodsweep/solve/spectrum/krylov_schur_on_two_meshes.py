@@ -46,7 +46,7 @@ class TwoMeshSettings:
     eigenvalue of a pulled rod is exponentially small compared with F^2."""
     scaled_rounding_error_beyond_shear_stiffness: float = 3e-11
     """`scaled_rounding_error` of a rod that is pulled beyond its shear stiffness anywhere, g < 0: ten times
-    the largest error of 60 such rods, whose growing modes have thin layers at the ends."""
+    the largest error of 54 such rods, whose growing modes have thin layers at the ends."""
     min_unknowns_per_mode: int = 3
     """Minimum number of unknowns of a mesh per requested eigenvalue: a third of the unknowns have no time
     derivative, and the highest modes of a mesh are not resolved."""
